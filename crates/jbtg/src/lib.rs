@@ -1,0 +1,2 @@
+//! Jerk-bounded trajectories from one velocity to another in one period.
+#![forbid(unsafe_code)]

@@ -1,0 +1,2 @@
+//! The multi-rate loop, the task, training, evaluation and recording.
+#![forbid(unsafe_code)]

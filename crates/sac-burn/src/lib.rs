@@ -1,0 +1,2 @@
+//! Soft actor-critic on burn.
+#![forbid(unsafe_code)]
