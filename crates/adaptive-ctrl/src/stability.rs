@@ -1,0 +1,171 @@
+//! The sampled loop: one joint as a double integrator under held effort.
+
+use crate::{JointSpec, LimitsError};
+
+/// Largest damping·A·period that a controller may be built with or adapt to.
+///
+/// The sampled velocity loop alone diverges at 2 and rings at more than 1. One half leaves a gain
+/// margin of 4, for what the analysis of one joint does not see: the other joints, friction, and a
+/// delay of one tick.
+pub const MAX_DAMPING_PER_TICK: f64 = 0.5;
+
+/// One joint under a linear control law, sampled with the effort held over each period.
+///
+/// The joint is ẍ = A·u with u = −P·e₁ − D·e₂ − I, I growing by K·e₁·T each tick. The transition over
+/// a period is exact. With d = D·A·T, p = P·A·T², i = K·A·T³ the characteristic polynomial is
+/// z² + (d + p/2 − 2)·z + (1 − d + p/2) without, and
+/// z³ + (d + p/2 − 3)·z² + (3 − 2d + i/2)·z + (d − 1 − p/2 + i/2) with the integral.
+/// Without it the loop is stable exactly if 0 < p < 2d and d < 2.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct DiscreteLoop {
+    /// d = D·A·T: share of a velocity error that one tick takes away.
+    pub damping_per_tick: f64,
+    /// p = P·A·T².
+    pub stiffness_per_tick: f64,
+    /// i = K·A·T³; 0 without an integral.
+    pub integral_per_tick: f64,
+}
+
+impl DiscreteLoop {
+    /// True if every closed-loop eigenvalue is inside the unit circle (the Jury conditions).
+    ///
+    /// NaN is unstable.
+    pub fn is_stable(&self) -> bool {
+        let (d, p, i) = (self.damping_per_tick, self.stiffness_per_tick, self.integral_per_tick);
+        if i == 0.0 {
+            return 0.0 < p && p < 2.0 * d && d < 2.0;
+        }
+        let (a2, a1, a0) = (d + 0.5 * p - 3.0, 3.0 - 2.0 * d + 0.5 * i, d - 1.0 - 0.5 * p + 0.5 * i);
+        let at_one = i; // the polynomial at z = 1, without its cancellation
+        at_one > 0.0
+            && 1.0 - a2 + a1 - a0 > 0.0
+            && a0.abs() < 1.0
+            && (1.0 - a0 * a0).abs() > (a1 - a0 * a2).abs()
+    }
+
+    /// Largest modulus of the closed-loop eigenvalues, of the loop without its integral.
+    pub fn spectral_radius(&self) -> f64 {
+        let (d, p) = (self.damping_per_tick, self.stiffness_per_tick);
+        let half_sum = 1.0 - 0.5 * d - 0.25 * p;
+        let product = 1.0 - d + 0.5 * p;
+        let discriminant = half_sum * half_sum - product;
+        if discriminant < 0.0 { libm::sqrt(product) } else { half_sum.abs() + libm::sqrt(discriminant) }
+    }
+}
+
+/// A controller would not be stable, or its joint's numbers make no sense.
+#[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
+pub enum StabilityError {
+    /// The period is not a positive number.
+    #[error(transparent)]
+    Limits(#[from] LimitsError),
+    /// The damping acts too strongly within one tick, where the joint is lightest.
+    #[error(
+        "damping {damping} × inverse inertia {inverse_inertia} × period {period} = {damping_per_tick}, \
+         must be at most {bound}: lower the gain or shorten the period"
+    )]
+    DampingTooStrong {
+        /// ½k₅, or the derivative gain [N·s/m or N·m·s/rad].
+        damping: f64,
+        /// Largest A of the stated range [1/kg or 1/(kg·m²)].
+        inverse_inertia: f64,
+        /// T_s [s].
+        period: f64,
+        /// Their product.
+        damping_per_tick: f64,
+        /// [`MAX_DAMPING_PER_TICK`].
+        bound: f64,
+    },
+    /// Position would be corrected faster than velocity can follow, where the joint is heaviest.
+    #[error(
+        "virtual control rate {virtual_rate} 1/s exceeds the velocity loop's {velocity_rate} 1/s \
+         at inverse inertia {inverse_inertia}: lower k1 or raise k5"
+    )]
+    VirtualControlTooFast {
+        /// ½k₁ [1/s].
+        virtual_rate: f64,
+        /// ½k₅·A [1/s].
+        velocity_rate: f64,
+        /// Smallest A of the stated range [1/kg or 1/(kg·m²)].
+        inverse_inertia: f64,
+    },
+    /// The sampled loop has an eigenvalue on or outside the unit circle.
+    #[error(
+        "sampled loop is unstable at inverse inertia {inverse_inertia}: damping {damping_per_tick}, \
+         stiffness {stiffness_per_tick}, integral {integral_per_tick} per tick"
+    )]
+    Unstable {
+        /// A at which it is [1/kg or 1/(kg·m²)].
+        inverse_inertia: f64,
+        /// d of [`DiscreteLoop`].
+        damping_per_tick: f64,
+        /// p of [`DiscreteLoop`].
+        stiffness_per_tick: f64,
+        /// i of [`DiscreteLoop`].
+        integral_per_tick: f64,
+    },
+}
+
+/// P, D and K of u = −P·e₁ − D·e₂ − K·∫e₁.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct LinearLaw {
+    pub(crate) stiffness: f64,
+    pub(crate) damping: f64,
+    pub(crate) integral: f64,
+}
+
+impl LinearLaw {
+    /// The loop that this law closes around a joint of inverse inertia A.
+    pub(crate) fn sampled(&self, inverse_inertia: f64, period: f64) -> DiscreteLoop {
+        let at = inverse_inertia * period;
+        DiscreteLoop {
+            damping_per_tick: self.damping * at,
+            stiffness_per_tick: self.stiffness * at * period,
+            integral_per_tick: self.integral * at * period * period,
+        }
+    }
+
+    /// Refuses a law that is too strong at the lightest or unstable at either end of the range.
+    ///
+    /// Between the ends nothing new happens without an integral: p/d does not depend on A, so the
+    /// stable set of A is an interval. With one, the loop loses stability towards small A (as in
+    /// continuous time: K < P·D·A) and towards large A only beyond the damping bound.
+    pub(crate) fn check(&self, joint: &JointSpec) -> Result<(), StabilityError> {
+        let JointSpec { period, inverse_inertia, .. } = *joint;
+        check_period(period)?;
+        let worst = self.sampled(inverse_inertia.max(), period);
+        // Written so that an overflow to infinity is refused too.
+        if !matches!(worst.damping_per_tick, d if d <= MAX_DAMPING_PER_TICK) {
+            return Err(StabilityError::DampingTooStrong {
+                damping: self.damping,
+                inverse_inertia: inverse_inertia.max(),
+                period,
+                damping_per_tick: worst.damping_per_tick,
+                bound: MAX_DAMPING_PER_TICK,
+            });
+        }
+        for a in [inverse_inertia.min(), inverse_inertia.max()] {
+            let sampled = self.sampled(a, period);
+            if !sampled.is_stable() {
+                return Err(StabilityError::Unstable {
+                    inverse_inertia: a,
+                    damping_per_tick: sampled.damping_per_tick,
+                    stiffness_per_tick: sampled.stiffness_per_tick,
+                    integral_per_tick: sampled.integral_per_tick,
+                });
+            }
+        }
+        Ok(())
+    }
+}
+
+pub(crate) fn check_period(period: f64) -> Result<(), LimitsError> {
+    if period.is_finite() && period > 0.0 {
+        Ok(())
+    } else {
+        Err(LimitsError::NotPositive { quantity: "period", value: period })
+    }
+}
+
+#[cfg(test)]
+mod tests;
