@@ -1,2 +1,34 @@
-//! Jerk-bounded trajectories from one velocity to another in one period.
+#![doc = include_str!("../README.md")]
+//!
+//! # Feature flags
+//! - `std` (default): square roots from the standard library.
+//! - `libm`: square roots from `libm`, for `no_std` targets.
+//! - `serde`: [`Limits`], [`PlannerSpec`], [`State`] and what they hold as serde data.
+//!
+//! The crate never allocates, logs or reads a clock. Units are SI throughout: "rad or m" stands for rad at a
+//! revolute joint and m at a prismatic one. [P] is the paper named in `docs/references.md`.
+#![cfg_attr(not(feature = "std"), no_std)]
 #![forbid(unsafe_code)]
+
+#[cfg(not(any(feature = "std", feature = "libm")))]
+compile_error!("jbtg needs a square root: enable the feature `std` or the feature `libm`");
+
+mod extrema;
+mod interval;
+mod limits;
+mod math;
+mod planner;
+mod pulse;
+mod roots;
+mod segment;
+mod shape;
+mod trajectory;
+
+pub use extrema::Extrema;
+pub use interval::Interval;
+pub use limits::{Limits, LimitsError, LimitsSpec, Quantity, SymmetricLimits};
+pub use planner::{Authority, MIN_AUTHORITY_SHARE, Planner, PlannerError, PlannerSpec, RampError};
+pub use pulse::Direction;
+pub use segment::{Segment, State};
+pub use shape::{Shape, Timing};
+pub use trajectory::{ControlPoint, MAX_SEGMENTS, Trajectory};

@@ -1,0 +1,296 @@
+//! Plans one period: from one velocity to another with zero acceleration at both ends.
+
+mod errors;
+
+pub use errors::{PlannerError, RampError};
+
+use crate::pulse::{Bounds, Direction, Pulse, PulseLimits};
+use crate::shape::ShapeConstants;
+use crate::{Interval, Limits, Shape, Timing, Trajectory};
+
+/// Smallest share of the acceleration limit that a period may leave; see [`Authority::share`].
+pub const MIN_AUTHORITY_SHARE: f64 = 1e-4;
+
+/// What a [`Planner`] is made of; not yet checked together.
+#[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize), serde(deny_unknown_fields))]
+pub struct PlannerSpec {
+    /// Limits of the joint.
+    pub limits: Limits,
+    /// Shape of the acceleration ramps.
+    pub shape: Shape,
+    /// How a step spends the period.
+    pub timing: Timing,
+    /// Duration of one step [s]: the policy's period.
+    pub period: f64,
+}
+
+/// What one period can do to the velocity in one direction.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Authority {
+    /// Largest velocity change within one period, Δ [rad/s or m/s], > 0.
+    pub velocity_change: f64,
+    /// Δ/(A·period): what zero acceleration at both ends of every period leaves of the acceleration limit A, in
+    /// (0, 1).
+    pub share: f64,
+    /// Largest distance per velocity change by which a step first moves against its own direction, or has
+    /// overshot before its end [s]. 0 for [`Shape::Smoothstep`].
+    pub reverse_travel: f64,
+}
+
+/// Plans steps of one joint, each exactly one period long, within its velocity, acceleration and jerk limits.
+///
+/// Position limits are not its business: `safezone` sees to them.
+///
+/// A step starts and ends with zero acceleration (and zero jerk, with [`Shape::Smoothstep`]).
+/// Source: [P, Alg. 1], [P, Alg. 2] and cases 1 and 3 of [P, Alg. 3], for both directions and for limits that
+/// differ between them. Cases 2 and 4 detour through a peak velocity for the greatest displacement; a step here
+/// goes from one velocity to the other directly.
+///
+/// # Examples
+/// ```
+/// use jbtg::{Interval, Limits, Planner, PlannerSpec, Shape, SymmetricLimits, Timing};
+///
+/// let limits = Limits::try_from(SymmetricLimits {
+///     position: Interval::new(0.14, 0.50),
+///     velocity: 0.15,
+///     acceleration: 1.0,
+///     jerk: 100.0,
+/// })?;
+/// let spec = PlannerSpec { limits, shape: Shape::default(), timing: Timing::default(), period: 0.05 };
+/// let planner = Planner::try_from(spec)?;
+/// let step = planner.ramp(0.3, 0.10, 0.12)?;
+/// assert_eq!(step.end().velocity, 0.12);
+/// assert!((step.end().position - (0.3 + 0.05 * 0.11)).abs() < 1e-15);
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
+#[derive(Clone, Copy, Debug)]
+pub struct Planner {
+    spec: PlannerSpec,
+    /// Velocity bounds, tightened by what the shape's velocity overshoots.
+    velocity: Interval,
+    increasing: PulseLimits,
+    decreasing: PulseLimits,
+    shape: ShapeConstants,
+}
+
+impl TryFrom<PlannerSpec> for Planner {
+    type Error = PlannerError;
+
+    fn try_from(spec: PlannerSpec) -> Result<Self, PlannerError> {
+        let PlannerSpec { limits, shape, timing, period } = spec;
+        if !(period.is_finite() && period > 0.0) {
+            return Err(PlannerError::Period { period });
+        }
+        let (velocity, acceleration, jerk) = (limits.velocity(), limits.acceleration(), limits.jerk());
+        let speed = velocity.max.min(-velocity.min);
+        let up = Bounds {
+            along: acceleration.max,
+            against: -acceleration.min,
+            jerk_up: jerk.max,
+            jerk_down: -jerk.min,
+            speed,
+        };
+        let down = Bounds {
+            along: -acceleration.min,
+            against: acceleration.max,
+            jerk_up: -jerk.min,
+            jerk_down: jerk.max,
+            speed,
+        };
+        let increasing = PulseLimits::new(up, shape, timing, period);
+        let decreasing = PulseLimits::new(down, shape, timing, period);
+        for pulse in [&increasing, &decreasing] {
+            check_authority(pulse, period)?;
+        }
+        let width = velocity.width();
+        let margin = increasing.reverse_velocity(shape, width).max(decreasing.reverse_velocity(shape, width));
+        let velocity = Interval::new(velocity.min + margin, velocity.max - margin);
+        if !(velocity.min < 0.0 && 0.0 < velocity.max) {
+            return Err(PlannerError::OutOfScale { name: "velocity margin", value: margin });
+        }
+        Ok(Self { spec, velocity, increasing, decreasing, shape: shape.constants() })
+    }
+}
+
+impl Planner {
+    /// What this planner was made of.
+    #[must_use]
+    pub const fn spec(&self) -> &PlannerSpec {
+        &self.spec
+    }
+
+    /// Limits of the joint.
+    #[must_use]
+    pub const fn limits(&self) -> &Limits {
+        &self.spec.limits
+    }
+
+    /// Duration of every step [s].
+    #[must_use]
+    pub const fn period(&self) -> f64 {
+        self.spec.period
+    }
+
+    /// The velocities that steps may end at [rad/s or m/s]: the velocity limits, tightened by up to 3e-5 of their
+    /// width for [`Shape::SineQuintic`], whose velocity overshoots its ends.
+    #[must_use]
+    pub const fn velocity(&self) -> Interval {
+        self.velocity
+    }
+
+    /// What one period can do to the velocity in `direction`.
+    #[must_use]
+    pub fn authority(&self, direction: Direction) -> Authority {
+        let pulse = self.pulses(direction);
+        Authority {
+            velocity_change: pulse.velocity_change,
+            share: pulse.share,
+            reverse_travel: pulse.reverse_travel(self.spec.shape),
+        }
+    }
+
+    /// Whether the period is below 3·A/J in a direction, so that it is too short for two full ramps and most of
+    /// the acceleration limit is never used. A warning: every step remains valid.
+    #[must_use]
+    pub fn is_period_short(&self) -> bool {
+        let jerk = self.spec.limits.jerk();
+        let slowest = jerk.max.min(-jerk.min);
+        let acceleration = self.spec.limits.acceleration();
+        self.spec.period * slowest < 3.0 * acceleration.max.max(-acceleration.min)
+    }
+
+    /// Velocities that one period can reach from `velocity` [rad/s or m/s], within the velocity limits.
+    ///
+    /// Never empty. From a velocity beyond a limit it holds what leads back fastest: everything reachable inside
+    /// the limits, or the one reachable velocity nearest to them. A velocity that is not finite gives NaN ends.
+    #[must_use]
+    #[inline]
+    pub fn reachable(&self, velocity: f64) -> Interval {
+        let highest = nearest_within(
+            velocity,
+            velocity + self.increasing.velocity_change,
+            self.increasing.velocity_change,
+        );
+        let lowest = nearest_within(
+            velocity,
+            velocity - self.decreasing.velocity_change,
+            self.decreasing.velocity_change,
+        );
+        if velocity > self.velocity.max {
+            return Interval::new(lowest.max(self.velocity.min), self.velocity.max.max(lowest));
+        }
+        if velocity < self.velocity.min {
+            return Interval::new(self.velocity.min.min(highest), highest.min(self.velocity.max));
+        }
+        Interval::new(lowest.max(self.velocity.min), highest.min(self.velocity.max))
+    }
+
+    /// Displacement of the step from `v1` to `v2` over one period [rad or m]: exactly what [`Planner::ramp`] adds
+    /// to the position.
+    ///
+    /// A formula, so it also answers for velocities that [`Planner::ramp`] would refuse.
+    #[must_use]
+    #[inline]
+    pub fn displacement(&self, v1: f64, v2: f64) -> f64 {
+        let change = v2 - v1;
+        let change_part = if change >= 0.0 {
+            self.increasing.displacement(change)
+        } else {
+            -self.decreasing.displacement(-change)
+        };
+        v1 * self.spec.period + change_part
+    }
+
+    /// The step from `position` and `v1` to `v2` in exactly one period.
+    ///
+    /// # Errors
+    /// [`RampError::Unreachable`] with the reachable velocities if `v2` is not one of them,
+    /// [`RampError::NotFinite`] for a NaN or an infinity.
+    #[inline]
+    pub fn ramp(&self, position: f64, v1: f64, v2: f64) -> Result<Trajectory, RampError> {
+        check_finite(position, v1, v2)?;
+        let reachable = self.reachable(v1);
+        if !reachable.contains(v2) {
+            return Err(RampError::Unreachable { from: v1, to: v2, reachable });
+        }
+        Ok(self.step(position, v1, v2))
+    }
+
+    /// The step from `position` and `v1` to the reachable velocity nearest to `v2`: "reduce v₂", step 3 of
+    /// [P, Alg. 1].
+    ///
+    /// The velocity taken is the trajectory's [`end`](Trajectory::end).
+    ///
+    /// # Errors
+    /// [`RampError::NotFinite`] for a NaN or an infinity.
+    pub fn ramp_saturated(&self, position: f64, v1: f64, v2: f64) -> Result<Trajectory, RampError> {
+        check_finite(position, v1, v2)?;
+        Ok(self.step(position, v1, self.reachable(v1).clamp(v2)))
+    }
+
+    #[inline]
+    fn step(&self, position: f64, v1: f64, v2: f64) -> Trajectory {
+        let change = v2 - v1;
+        let pulse = if change > 0.0 {
+            self.increasing.pulse(change)
+        } else if change < 0.0 {
+            let pulse = self.decreasing.pulse(-change);
+            Pulse { acceleration: -pulse.acceleration, ..pulse }
+        } else {
+            let rest = self.spec.period; // Case 3 of [P, Alg. 3].
+            Pulse { acceleration: 0.0, ramp_up: 0.0, cruise: 0.0, ramp_down: 0.0, rest }
+        };
+        let end = (position + self.displacement(v1, v2), v2);
+        Trajectory::from_pulse(position, v1, (pulse, self.spec.period), end, &self.shape)
+    }
+
+    const fn pulses(&self, direction: Direction) -> &PulseLimits {
+        match direction {
+            Direction::Increasing => &self.increasing,
+            Direction::Decreasing => &self.decreasing,
+        }
+    }
+}
+
+/// `target`, moved towards `start` by an ulp where rounding put it further away than `change`.
+#[inline]
+fn nearest_within(start: f64, target: f64, change: f64) -> f64 {
+    if (target - start).abs() > change {
+        if target > start { target.next_down() } else { target.next_up() }
+    } else {
+        target
+    }
+}
+
+fn check_finite(position: f64, v1: f64, v2: f64) -> Result<(), RampError> {
+    for (name, value) in [("position", position), ("initial velocity", v1), ("final velocity", v2)] {
+        if !value.is_finite() {
+            return Err(RampError::NotFinite { name, value });
+        }
+    }
+    Ok(())
+}
+
+/// Refuses periods that leave next to nothing, and limits whose quintics would overflow or underflow.
+fn check_authority(pulse: &PulseLimits, period: f64) -> Result<(), PlannerError> {
+    let (shortest, a) = (pulse.ramp_up.min(pulse.ramp_down), pulse.acceleration);
+    let numbers = [
+        ("acceleration", a),
+        ("velocity change", pulse.velocity_change),
+        ("ramp duration", shortest),
+        ("shortest ramp cubed", (1e-6 * shortest) * (1e-6 * shortest) * (1e-6 * shortest)),
+        ("quintic coefficient", a / (shortest * shortest * shortest)),
+        ("displacement", period * pulse.velocity_change),
+        ("braking distance scale", period / pulse.velocity_change),
+    ];
+    for (name, value) in numbers {
+        if !value.is_normal() {
+            return Err(PlannerError::OutOfScale { name, value });
+        }
+    }
+    if pulse.share < MIN_AUTHORITY_SHARE {
+        return Err(PlannerError::PeriodTooShort { period, share: pulse.share });
+    }
+    Ok(())
+}
