@@ -1,0 +1,347 @@
+//! The agent: networks, optimisers, replay memory and noise under one roof.
+
+use tracing::trace_span;
+
+use crate::adam::Adam;
+use crate::config::{Config, ConfigError};
+use crate::losses::Losses;
+use crate::network::{Network, Optimizer};
+use crate::noise::Noise;
+use crate::policy::Policy;
+use crate::replay::{Batch, Replay, ReplayAllocationError};
+use crate::squash::{StdBounds, head_gradient, sample};
+use crate::temperature::Temperature;
+use crate::transition::{Transition, TransitionError};
+use crate::update::{critic_loss, join, mean, smaller, targets};
+
+/// A soft actor-critic agent (Haarnoja et al. 2018) on flat `f32` slices.
+///
+/// Twin critics, squashed Gaussian policy, learned entropy temperature. It is deterministic: equal configuration,
+/// seed and sequence of calls give bit-identical weights and actions on one machine. Speaks of neither files nor
+/// clocks; observations come normalised, actions lie in [−1, 1].
+///
+/// # Examples
+/// ```
+/// use sac_burn::{Agent, Config, ConfigSpec, Outcome, Transition};
+///
+/// let spec = ConfigSpec { batch_size: 8, random_steps: 8, update_after: 8, ..Config::table_1().spec().clone() };
+/// let mut agent = Agent::new(Config::try_from(spec)?, 2, 1, 7)?;
+/// let mut action = [0.0];
+/// for step in 0..16 {
+///     agent.act(&[0.0, 1.0], &mut action); // uniform while warming up, then drawn from the policy
+///     agent.remember(&Transition {
+///         observation: &[0.0, 1.0],
+///         action: &action,
+///         reward: -action[0].abs(),
+///         next_observation: &[0.0, 1.0],
+///         outcome: if step % 4 == 3 { Outcome::Truncated } else { Outcome::Continues },
+///     })?;
+///     if let Some(losses) = agent.update() {
+///         assert!(losses.is_finite());
+///     }
+/// }
+/// assert_eq!((agent.steps(), agent.updates()), (16, 9));
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
+#[derive(Debug)]
+pub struct Agent {
+    pub(crate) config: Config,
+    pub(crate) observation_dim: usize,
+    pub(crate) action_dim: usize,
+    pub(crate) actor: Network,
+    pub(crate) critics: Network,
+    pub(crate) targets: Network,
+    pub(crate) actor_optimizer: Optimizer,
+    pub(crate) critic_optimizer: Optimizer,
+    pub(crate) temperature: Temperature,
+    pub(crate) replay: Replay,
+    pub(crate) noise: Noise,
+    /// Transitions remembered since the agent was made.
+    pub(crate) steps: u64,
+    /// Gradient updates since the agent was made.
+    pub(crate) updates: u64,
+    /// Host copy of the actor, equal to it after every update.
+    policy: Policy,
+    batch: Batch,
+}
+
+/// Why an agent could not be made.
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+pub enum AgentError {
+    /// A dimension is zero.
+    #[error("{dimension} must be at least 1, got 0")]
+    ZeroDimension {
+        /// Which dimension.
+        dimension: &'static str,
+    },
+    /// The hyperparameters are not usable.
+    #[error(transparent)]
+    Config(#[from] ConfigError),
+    /// There is no memory for the replay.
+    #[error(transparent)]
+    Replay(#[from] ReplayAllocationError),
+    /// A later stage asks for networks of another shape than those it continues.
+    #[error(
+        "hidden layers cannot change between stages: they are {found:?}, the new stage asks for {expected:?}"
+    )]
+    HiddenLayers {
+        /// Hidden layers of the new configuration.
+        expected: Vec<usize>,
+        /// Hidden layers of the agent.
+        found: Vec<usize>,
+    },
+}
+
+/// What becomes of the remembered transitions when a new stage begins.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum ReplayStart {
+    /// Keep them, the newest first to stay if the capacity shrinks.
+    Keep,
+    /// Forget them; updates wait until `update_after` new ones are there.
+    Clear,
+}
+
+impl Agent {
+    /// A fresh agent whose every random number comes from `seed`.
+    ///
+    /// Reserves the replay memory at once, 4·(2·`observation_dim` + `action_dim` + 2) bytes per transition; the
+    /// operating system backs it as it fills.
+    ///
+    /// # Errors
+    /// [`AgentError::ZeroDimension`] if there is nothing to see or to do, [`AgentError::Replay`] if the replay
+    /// memory cannot be reserved.
+    pub fn new(
+        config: Config,
+        observation_dim: usize,
+        action_dim: usize,
+        seed: u64,
+    ) -> Result<Self, AgentError> {
+        for (dimension, size) in [("observation_dim", observation_dim), ("action_dim", action_dim)] {
+            if size == 0 {
+                return Err(AgentError::ZeroDimension { dimension });
+            }
+        }
+        let spec = config.spec();
+        let replay = Replay::new(observation_dim, action_dim, spec.replay_capacity)?;
+        let mut noise = Noise::new(seed);
+        let widths = |inputs: usize, outputs: usize| [&[inputs], spec.hidden.as_slice(), &[outputs]].concat();
+        let actor = Network::new(1, &widths(observation_dim, 2 * action_dim), &mut noise);
+        let critics = Network::new(2, &widths(observation_dim + action_dim, 1), &mut noise);
+        Ok(Self {
+            observation_dim,
+            action_dim,
+            targets: critics.duplicate(),
+            actor_optimizer: Optimizer::new(&actor),
+            critic_optimizer: Optimizer::new(&critics),
+            temperature: Temperature::new(spec.initial_entropy_temperature),
+            policy: Policy::of(&actor),
+            replay,
+            noise,
+            steps: 0,
+            updates: 0,
+            batch: Batch::default(),
+            actor,
+            critics,
+            config,
+        })
+    }
+
+    /// Continues a trained agent in a new stage of the curriculum, under that stage's hyperparameters.
+    ///
+    /// Networks, optimisers, entropy temperature, counters and the state of the generator carry over, so no second
+    /// random phase begins. `initial_entropy_temperature` of the new configuration is not used.
+    ///
+    /// # Errors
+    /// [`AgentError::HiddenLayers`] if the new configuration has other hidden layers, [`AgentError::Replay`] if
+    /// a replay memory of another capacity cannot be reserved.
+    pub fn start_from(previous: Self, config: Config, replay: ReplayStart) -> Result<Self, AgentError> {
+        let mut agent = previous;
+        let (expected, found) = (&config.spec().hidden, &agent.config.spec().hidden);
+        if expected != found {
+            return Err(AgentError::HiddenLayers { expected: expected.clone(), found: found.clone() });
+        }
+        if replay == ReplayStart::Clear {
+            agent.replay.clear();
+        }
+        if config.spec().replay_capacity != agent.replay.capacity() {
+            agent.replay = agent.replay.with_capacity(config.spec().replay_capacity)?;
+        }
+        agent.config = config;
+        Ok(agent)
+    }
+
+    /// Hyperparameters.
+    pub fn config(&self) -> &Config {
+        &self.config
+    }
+
+    /// Components of an observation.
+    pub fn observation_dim(&self) -> usize {
+        self.observation_dim
+    }
+
+    /// Components of an action.
+    pub fn action_dim(&self) -> usize {
+        self.action_dim
+    }
+
+    /// Transitions remembered since the agent was made, in all stages.
+    pub fn steps(&self) -> u64 {
+        self.steps
+    }
+
+    /// Gradient updates since the agent was made, in all stages.
+    pub fn updates(&self) -> u64 {
+        self.updates
+    }
+
+    /// Transitions in the replay memory.
+    pub fn replay_len(&self) -> usize {
+        self.replay.len()
+    }
+
+    /// Entropy temperature α.
+    pub fn entropy_temperature(&self) -> f64 {
+        self.temperature.value()
+    }
+
+    /// Whether [`Agent::act`] still draws uniform actions: fewer than `random_steps` transitions were remembered.
+    pub fn is_warming_up(&self) -> bool {
+        self.steps < self.config.spec().random_steps
+    }
+
+    /// The deterministic policy as it is now.
+    pub fn policy(&self) -> &Policy {
+        &self.policy
+    }
+
+    /// Forgets every remembered transition. Updates wait until `update_after` new ones are there.
+    pub fn clear_replay(&mut self) {
+        self.replay.clear();
+    }
+
+    /// Draws an action to explore with: uniform in [−1, 1) while warming up, then from the squashed Gaussian.
+    ///
+    /// # Panics
+    /// If a slice does not have the agent's length.
+    pub fn act(&mut self, observation: &[f32], action: &mut [f32]) {
+        assert_eq!(observation.len(), self.observation_dim, "length of the observation");
+        assert_eq!(action.len(), self.action_dim, "length of the action");
+        if self.is_warming_up() {
+            action.fill_with(|| self.noise.uniform(1.0));
+            return;
+        }
+        let head = self.policy.head(observation);
+        let mut noise = vec![0.0; self.action_dim];
+        self.noise.fill_normal(&mut noise);
+        action.copy_from_slice(&sample(&head, &noise, self.action_dim, self.std_bounds()).actions);
+    }
+
+    /// The action without noise, tanh of the mean; touches nothing and draws nothing.
+    ///
+    /// # Panics
+    /// If a slice does not have the agent's length.
+    pub fn act_deterministic(&self, observation: &[f32], action: &mut [f32]) {
+        self.policy.act(observation, action);
+    }
+
+    /// Stores one environment step and counts it.
+    ///
+    /// # Errors
+    /// [`TransitionError`] if a length is wrong, a number is not finite or the action leaves [−1, 1]; nothing is
+    /// stored then.
+    pub fn remember(&mut self, transition: &Transition<'_>) -> Result<(), TransitionError> {
+        transition.check(self.observation_dim, self.action_dim)?;
+        self.replay.push(transition);
+        self.steps += 1;
+        Ok(())
+    }
+
+    /// One gradient update of critics, actor, entropy temperature and target critics, in this order.
+    ///
+    /// `None`, and nothing happens, until the replay memory holds `update_after` transitions and a batch. The actor
+    /// sees the critics just updated; all parts use the temperature from before.
+    pub fn update(&mut self) -> Option<Losses> {
+        if self.replay.len() < self.config.update_threshold() {
+            return None;
+        }
+        let _span = trace_span!("update", update = self.updates).entered();
+        let mut batch = std::mem::take(&mut self.batch);
+        self.replay.sample(self.config.spec().batch_size, &mut self.noise, &mut batch);
+        let adam = Adam::new(self.config.spec());
+        let mut losses = Losses {
+            entropy_temperature: self.temperature.value(),
+            mean_reward: mean(&batch.rewards),
+            ..Losses::default()
+        };
+        self.update_critics(&batch, &adam, &mut losses);
+        self.update_actor(&batch, &adam, &mut losses);
+        let target_entropy = self.config.target_entropy(self.action_dim);
+        losses.temperature = self.temperature.step(&adam, -losses.entropy, target_entropy);
+        self.policy.copy_from(&self.actor);
+        self.batch = batch;
+        self.updates += 1;
+        Some(losses)
+    }
+
+    fn update_critics(&mut self, batch: &Batch, adam: &Adam, losses: &mut Losses) {
+        let spec = self.config.spec();
+        let noise = normal(&mut self.noise, spec.batch_size * self.action_dim);
+        let head = self.actor.forward(batch.next_observations.clone());
+        let next = sample(&head, &noise, self.action_dim, self.std_bounds());
+        let next_q = self.targets.forward(self.critic_input(&batch.next_observations, &next.actions));
+        let alpha = losses.entropy_temperature as f32;
+        let targets = targets(batch, &next_q, &next.log_probabilities, spec.discount as f32, alpha);
+
+        let tape = self.critics.forward_taped(self.critic_input(&batch.observations, &batch.actions));
+        losses.mean_q = mean(&tape.output);
+        losses.mean_target = mean(&targets);
+        let (loss, slope) = critic_loss(&tape.output, &targets);
+        losses.critic = loss;
+        let gradients = self.critics.gradients(tape, slope);
+        let polyak = spec.polyak as f32;
+        let optimizer = &mut self.critic_optimizer;
+        self.critics.step_followed(adam, optimizer, &gradients, &mut self.targets, polyak);
+    }
+
+    fn update_actor(&mut self, batch: &Batch, adam: &Adam, losses: &mut Losses) {
+        let noise = normal(&mut self.noise, self.config.spec().batch_size * self.action_dim);
+        let tape = self.actor.forward_taped(batch.observations.clone());
+        let bounds = self.std_bounds();
+        let drawn = sample(&tape.output, &noise, self.action_dim, bounds);
+        let input = self.critic_input(&batch.observations, &drawn.actions);
+        let critic_tape = self.critics.forward_taped(input);
+        let (values, mask) = smaller(&critic_tape.output);
+        let inputs = self.observation_dim + self.action_dim;
+        let value_slope = self.critics.input_gradient(critic_tape, mask, self.observation_dim, inputs);
+
+        let mean_log_probability = mean(&drawn.log_probabilities);
+        losses.entropy = -mean_log_probability;
+        losses.actor = losses.entropy_temperature * mean_log_probability - mean(&values);
+        let alpha = losses.entropy_temperature as f32;
+        let (head, actions) = (&tape.output, &drawn.actions);
+        let slope = head_gradient(head, &noise, actions, &value_slope, alpha, self.action_dim, bounds);
+        let gradients = self.actor.gradients(tape, slope);
+        self.actor.step(adam, &mut self.actor_optimizer, &gradients);
+    }
+
+    fn critic_input(&self, observations: &[f32], actions: &[f32]) -> Vec<f32> {
+        join(observations, actions, self.observation_dim, self.action_dim)
+    }
+
+    fn std_bounds(&self) -> StdBounds {
+        let spec = self.config.spec();
+        StdBounds { min: spec.log_std_min as f32, max: spec.log_std_max as f32 }
+    }
+
+    /// Brings the host copy of the actor up to date after its weights were replaced.
+    pub(crate) fn refresh_policy(&mut self) {
+        self.policy.copy_from(&self.actor);
+    }
+}
+
+fn normal(noise: &mut Noise, count: usize) -> Vec<f32> {
+    let mut values = vec![0.0; count];
+    noise.fill_normal(&mut values);
+    values
+}
