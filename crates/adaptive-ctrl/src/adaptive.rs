@@ -5,8 +5,8 @@ mod hold;
 use crate::law::{AdaptiveLaw, LawSpec};
 use crate::stability::{LinearLaw, check_period};
 use crate::{
-    Command, EffortLimits, Gains, GainsSpec, HoldError, Input, JointController, JointSpec, MAX_DAMPING_PER_TICK,
-    Measurement, Reference, Saturation, StabilityError,
+    Command, EffortLimits, Gains, GainsSpec, HoldError, Input, JointController, JointSpec,
+    MAX_DAMPING_PER_TICK, Measurement, Reference, Saturation, StabilityError,
 };
 
 /// Adaptive controller of one joint, [P, Eqs. (304), (305), (307), (310), (311)].
@@ -174,11 +174,7 @@ impl JointController for AdaptiveController {
         // Infinite inputs end up in e₁ or e₂; finite ones that overflow do in u.
         if !(e1.is_finite() && e2.is_finite() && !u.is_nan()) {
             self.adaptation = Adaptation::Frozen;
-            return Command {
-                effort: self.last_effort,
-                saturation: Saturation::None,
-                input: Input::Refused,
-            };
+            return Command { effort: self.last_effort, saturation: Saturation::None, input: Input::Refused };
         }
         let (effort, saturation) = self.effort_limits.saturate(u);
         self.last_effort = effort;

@@ -1,7 +1,8 @@
 //! A controller chosen at run time.
 
 use crate::{
-    AdaptiveController, Command, HoldError, JointController, Measurement, PdController, PidController, Reference,
+    AdaptiveController, Command, HoldError, JointController, Measurement, PdController, PidController,
+    Reference,
 };
 
 /// One of the three controllers, for a choice that is made in configuration.

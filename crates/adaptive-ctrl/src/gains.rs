@@ -84,7 +84,8 @@ pub(crate) fn check_positive(gain: &'static str, value: f64) -> Result<(), Gains
 mod tests {
     use super::*;
 
-    const ONES: GainsSpec = GainsSpec { k1: 1.0, k2: 1.0, k3: 1.0, k4: 1.0, k5: 1.0, k6: 1.0, k7: 1.0, k8: 1.0 };
+    const ONES: GainsSpec =
+        GainsSpec { k1: 1.0, k2: 1.0, k3: 1.0, k4: 1.0, k5: 1.0, k6: 1.0, k7: 1.0, k8: 1.0 };
 
     #[test]
     fn refuses_each_gain_that_is_not_positive_by_its_name() {

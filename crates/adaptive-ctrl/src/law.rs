@@ -129,13 +129,8 @@ mod tests {
 
     #[test]
     fn the_ceiling_holds_and_says_so() {
-        let mut law = AdaptiveLaw::new(LawSpec {
-            weight: 1.0,
-            speed: 1.0,
-            leakage: 1.0,
-            period: 0.1,
-            ceiling: 0.2,
-        });
+        let mut law =
+            AdaptiveLaw::new(LawSpec { weight: 1.0, speed: 1.0, leakage: 1.0, period: 0.1, ceiling: 0.2 });
         assert!(!law.advance(1.0));
         assert!((0..100).any(|_| law.advance(1e200)));
         assert_eq!(law.estimate(), 0.2);

@@ -46,6 +46,7 @@
 
 mod adaptive;
 mod any;
+mod coupled;
 mod gains;
 mod interface;
 mod joints;
@@ -59,6 +60,7 @@ mod table;
 
 pub use adaptive::{Adaptation, AdaptiveController, Parameters};
 pub use any::AnyController;
+pub use coupled::coupled_damping_per_tick;
 pub use gains::{Gains, GainsError, GainsSpec};
 pub use interface::{Command, HoldError, Input, JointController, Measurement, Reference, Saturation};
 pub use joints::{JointHoldError, Joints};

@@ -70,8 +70,10 @@ impl TryFrom<Bounds> for EffortLimits {
 /// Range of A, the inverse of the inertia that the joint's actuator moves, over the workspace
 /// [1/kg or 1/(kg·m²)]. Invariant: finite, 0 < min ≤ max.
 ///
-/// A is the joint's own diagonal element of the inverse mass matrix, with the other joints free to
-/// move and the actuator's reflected inertia counted.
+/// A is the joint's own diagonal element of the inverse mass matrix: its acceleration per effort with
+/// the other joints free to move, the actuator's reflected inertia counted. The inverse of the mass
+/// matrix's diagonal, with the other joints locked, is smaller (five times on a loader crane) and gives
+/// gains that are too high: [`coupled_damping_per_tick`](crate::coupled_damping_per_tick) shows it.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct InverseInertia {
     min: f64,
@@ -119,7 +121,7 @@ impl TryFrom<Bounds> for InverseInertia {
 /// What a controller must know about its joint. The period is checked when the controller is built.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct JointSpec {
-    /// T_s, the time between two calls of `step` [s]: finite, > 0.
+    /// T_s, the time between two calls of `step`, in seconds: finite, > 0.
     pub period: f64,
     /// Range of A over the workspace.
     pub inverse_inertia: InverseInertia,

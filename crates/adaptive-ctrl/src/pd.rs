@@ -94,11 +94,7 @@ impl JointController for PdController {
         let e2 = measurement.velocity - reference.velocity;
         let u = -self.gains.proportional * e1 - self.gains.derivative * e2;
         if !(e1.is_finite() && e2.is_finite() && !u.is_nan()) {
-            return Command {
-                effort: self.last_effort,
-                saturation: Saturation::None,
-                input: Input::Refused,
-            };
+            return Command { effort: self.last_effort, saturation: Saturation::None, input: Input::Refused };
         }
         let (effort, saturation) = self.effort_limits.saturate(u);
         self.last_effort = effort;

@@ -5,8 +5,8 @@ use crate::{JointSpec, LimitsError};
 /// Largest damping·A·period that a controller may be built with or adapt to.
 ///
 /// The sampled velocity loop alone diverges at 2 and rings at more than 1. One half leaves a gain
-/// margin of 4, for what the analysis of one joint does not see: the other joints, friction, and a
-/// delay of one tick.
+/// margin of 4, for what the analysis of one joint does not see: the other joints
+/// ([`coupled_damping_per_tick`](crate::coupled_damping_per_tick)), friction, and a delay of one tick.
 pub const MAX_DAMPING_PER_TICK: f64 = 0.5;
 
 /// One joint under a linear control law, sampled with the effort held over each period.
@@ -69,7 +69,7 @@ pub enum StabilityError {
         damping: f64,
         /// Largest A of the stated range [1/kg or 1/(kg·m²)].
         inverse_inertia: f64,
-        /// T_s [s].
+        /// T_s, in seconds.
         period: f64,
         /// Their product.
         damping_per_tick: f64,
