@@ -1,0 +1,219 @@
+//! Mass matrix, bias, forward and inverse dynamics, energies.
+#![expect(non_snake_case, reason = "monogram frames")]
+
+use nalgebra::Vector3;
+
+use crate::cholesky;
+use crate::data::Data;
+use crate::error::DynamicsError;
+use crate::kinematics::{check, check_length};
+use crate::model::CraneModel;
+use crate::spatial::Force;
+
+/// A force and a moment that the surroundings exert at the tip, world axes.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Wrench {
+    /// Force [N].
+    pub force: [f64; 3],
+    /// Moment about the tip [N·m].
+    pub moment: [f64; 3],
+}
+
+impl CraneModel {
+    /// Kinematics, mass matrix, bias and gravity effort at a state.
+    ///
+    /// M = GᵀHG and bias = Gᵀ(h + Hġ), with H and h of the tree; H by composite bodies, h + Hġ by one
+    /// Newton-Euler pass whose joint accelerations are ġ.
+    ///
+    /// # Errors
+    /// Those of [`update_kinematics`](Self::update_kinematics).
+    pub fn update_dynamics(
+        &self,
+        data: &mut Data,
+        position: &[f64],
+        velocity: &[f64],
+    ) -> Result<(), DynamicsError> {
+        self.update_kinematics(data, position, velocity)?;
+        self.sum_bodies(data);
+        Ok(())
+    }
+
+    /// One pass from the tips inwards.
+    fn sum_bodies(&self, data: &mut Data) {
+        let n = self.actuators.len();
+        data.mass_matrix.fill(0.0);
+        data.bias.fill(0.0);
+        data.gravity_effort.fill(0.0);
+        for i in 0..self.masses.len() {
+            let I_W = self.masses[i].in_world(&data.X_WB[i]);
+            let V_WB = &data.twist[i];
+            let inertial = I_W.times(&data.acceleration[i]);
+            data.wrench[i] = inertial.plus(&V_WB.cross_force(&I_W.times(V_WB)));
+            data.composite[i] = I_W;
+        }
+        for i in (0..self.masses.len()).rev() {
+            let (S_i, k_i, slope_i) = (data.subspace[i], self.driven_by[i], data.slope[i]);
+            let composite = data.composite[i];
+            let F_i = data.wrench[i];
+            data.bias[k_i] += slope_i * S_i.dot(&F_i);
+            let weight = Force {
+                moment: composite.first_moment.cross(&-self.gravity),
+                force: self.gravity * -composite.mass,
+            };
+            data.gravity_effort[k_i] += slope_i * S_i.dot(&weight);
+
+            // Column i of H up to the ground, folded into M at once.
+            let momentum = composite.times(&S_i);
+            data.mass_matrix[k_i * n + k_i] += slope_i * slope_i * S_i.dot(&momentum);
+            let mut ancestor = self.tree.joints[i].parent;
+            while let Some(j) = ancestor {
+                let k_j = self.driven_by[j];
+                let value = slope_i * data.slope[j] * data.subspace[j].dot(&momentum);
+                data.mass_matrix[k_i * n + k_j] += value;
+                data.mass_matrix[k_j * n + k_i] += value;
+                ancestor = self.tree.joints[j].parent;
+            }
+            if let Some(p) = self.tree.joints[i].parent {
+                data.composite[p] = data.composite[p].plus(&composite);
+                data.wrench[p] = data.wrench[p].plus(&F_i);
+            }
+        }
+        for (k, armature) in self.armature.iter().enumerate() {
+            data.mass_matrix[k * n + k] += armature;
+        }
+    }
+
+    /// Acceleration ÿ that `effort` causes, written to `acceleration` [rad/s² or m/s²]: M ÿ = effort + Jᵀw − bias
+    /// − friction.
+    ///
+    /// `tip_wrench` acts on the tip from outside. `data` then holds all terms at this state.
+    ///
+    /// # Errors
+    /// Those of [`update_kinematics`](Self::update_kinematics); [`DynamicsError::SingularMassMatrix`] only where
+    /// numbers near overflow meet.
+    pub fn forward_dynamics(
+        &self,
+        data: &mut Data,
+        position: &[f64],
+        velocity: &[f64],
+        effort: &[f64],
+        tip_wrench: Option<&Wrench>,
+        acceleration: &mut [f64],
+    ) -> Result<(), DynamicsError> {
+        let n = self.actuators.len();
+        check("effort", effort, n)?;
+        check_length("acceleration", acceleration, n)?;
+        check_wrench(tip_wrench)?;
+        self.update_dynamics(data, position, velocity)?;
+        for k in 0..n {
+            acceleration[k] = effort[k] - data.bias[k] - self.friction[k].effort(velocity[k]);
+        }
+        if let Some(wrench) = tip_wrench {
+            self.add_tip_effort(data, wrench, 1.0, acceleration);
+        }
+        cholesky::factorize(n, &data.mass_matrix, &mut data.factor).map_err(singular)?;
+        cholesky::solve(n, &data.factor, acceleration);
+        Ok(())
+    }
+
+    /// Effort that causes `acceleration`, written to `effort` [N·m or N]: M ÿ + bias + friction − Jᵀw.
+    ///
+    /// # Errors
+    /// Those of [`update_kinematics`](Self::update_kinematics).
+    pub fn inverse_dynamics(
+        &self,
+        data: &mut Data,
+        position: &[f64],
+        velocity: &[f64],
+        acceleration: &[f64],
+        tip_wrench: Option<&Wrench>,
+        effort: &mut [f64],
+    ) -> Result<(), DynamicsError> {
+        let n = self.actuators.len();
+        check("acceleration", acceleration, n)?;
+        check_length("effort", effort, n)?;
+        check_wrench(tip_wrench)?;
+        self.update_dynamics(data, position, velocity)?;
+        for k in 0..n {
+            let row = &data.mass_matrix[k * n..(k + 1) * n];
+            let inertial: f64 = row.iter().zip(acceleration).map(|(m, a)| m * a).sum();
+            effort[k] = inertial + data.bias[k] + self.friction[k].effort(velocity[k]);
+        }
+        if let Some(wrench) = tip_wrench {
+            self.add_tip_effort(data, wrench, -1.0, effort);
+        }
+        Ok(())
+    }
+
+    /// Adds `factor`·Jᵀw to `effort`.
+    fn add_tip_effort(&self, data: &Data, wrench: &Wrench, factor: f64, effort: &mut [f64]) {
+        let force = Vector3::from(wrench.force);
+        let moment = Vector3::from(wrench.moment) + self.tip_point(data).cross(&force);
+        let F_W = Force { moment, force };
+        for &i in &self.tip_path {
+            effort[self.driven_by[i]] += factor * data.slope[i] * data.subspace[i].dot(&F_W);
+        }
+    }
+
+    /// Writes the effort that friction opposes to `velocity` to `effort` [N·m or N]: zero without a plant.
+    ///
+    /// # Errors
+    /// [`DynamicsError::Length`] or [`DynamicsError::NotFinite`].
+    pub fn friction_effort(&self, velocity: &[f64], effort: &mut [f64]) -> Result<(), DynamicsError> {
+        check("velocity", velocity, self.actuators.len())?;
+        check_length("effort", effort, self.actuators.len())?;
+        for ((value, friction), rate) in effort.iter_mut().zip(&self.friction).zip(velocity) {
+            *value = friction.effort(*rate);
+        }
+        Ok(())
+    }
+
+    /// Writes the diagonal of M⁻¹ to `diagonal` [1/(kg·m²) or 1/kg]: acceleration of each actuator per its own
+    /// effort while the others are free. As of the last `update_dynamics` or dynamics call.
+    ///
+    /// # Errors
+    /// [`DynamicsError::Length`] or [`DynamicsError::SingularMassMatrix`].
+    pub fn inverse_effective_inertia(
+        &self,
+        data: &mut Data,
+        diagonal: &mut [f64],
+    ) -> Result<(), DynamicsError> {
+        let n = self.actuators.len();
+        check_length("diagonal", diagonal, n)?;
+        cholesky::factorize(n, &data.mass_matrix, &mut data.factor).map_err(singular)?;
+        for (k, value) in diagonal.iter_mut().enumerate() {
+            // (M⁻¹)ₖₖ = |L⁻¹eₖ|²
+            data.column.fill(0.0);
+            data.column[k] = 1.0;
+            cholesky::forward(n, &data.factor, &mut data.column);
+            *value = data.column.iter().map(|x| x * x).sum();
+        }
+        Ok(())
+    }
+
+    /// Kinetic energy [J], armature included, as of the last update.
+    pub fn kinetic_energy(&self, data: &Data) -> f64 {
+        let bodies = self.masses.iter().enumerate().map(|(i, mass)| {
+            let V_WB = &data.twist[i];
+            V_WB.dot(&mass.in_world(&data.X_WB[i]).times(V_WB))
+        });
+        let motors = self.armature.iter().zip(&data.velocity).map(|(armature, v)| armature * v * v);
+        0.5 * (bodies.sum::<f64>() + motors.sum::<f64>())
+    }
+
+    /// Potential energy of all moving bodies and the payload [J], zero at the world origin, as of the last update.
+    pub fn potential_energy(&self, data: &Data) -> f64 {
+        let bodies = self.masses.iter().zip(&data.X_WB);
+        -bodies.map(|(mass, X_WB)| mass.mass * self.gravity.dot(&X_WB.point(&mass.center))).sum::<f64>()
+    }
+}
+
+fn singular((pivot, value): (usize, f64)) -> DynamicsError {
+    DynamicsError::SingularMassMatrix { pivot, value }
+}
+
+fn check_wrench(wrench: Option<&Wrench>) -> Result<(), DynamicsError> {
+    let Some(wrench) = wrench else { return Ok(()) };
+    check("tip_wrench.force", &wrench.force, 3)?;
+    check("tip_wrench.moment", &wrench.moment, 3)
+}

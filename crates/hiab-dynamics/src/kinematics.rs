@@ -1,0 +1,228 @@
+//! Positions, velocities and bias accelerations of all bodies, and the tip.
+#![expect(non_snake_case, reason = "monogram frames")]
+
+use nalgebra::{Matrix3, Vector3};
+use serde::Serialize;
+
+use crate::data::Data;
+use crate::error::DynamicsError;
+use crate::model::CraneModel;
+use crate::spatial::{Motion, Transform, rotation_about};
+use crate::tree::JointKind;
+
+/// Pose of a frame in the world.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+pub struct Pose {
+    /// Origin [m].
+    pub position: [f64; 3],
+    /// Rotation matrix, row by row; its columns are the frame's axes.
+    pub rotation: [[f64; 3]; 3],
+}
+
+/// Linear and angular part of a velocity or an acceleration at a point, world axes.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+pub struct Twist {
+    /// Linear part [m/s or m/s²].
+    pub linear: [f64; 3],
+    /// Angular part [rad/s or rad/s²].
+    pub angular: [f64; 3],
+}
+
+impl CraneModel {
+    /// Brings joints, bodies and tip in `data` to `position` and `velocity` of the actuators.
+    ///
+    /// # Errors
+    /// [`DynamicsError::Length`], [`DynamicsError::NotFinite`], or [`DynamicsError::StrokeOutsideLoop`]. Positions
+    /// outside the actuators' own limits are legal as long as every loop closes.
+    pub fn update_kinematics(
+        &self,
+        data: &mut Data,
+        position: &[f64],
+        velocity: &[f64],
+    ) -> Result<(), DynamicsError> {
+        let n = self.actuators.len();
+        check("position", position, n)?;
+        check("velocity", velocity, n)?;
+        self.eliminate_loops(data, position, velocity)?;
+        self.pose_bodies(data);
+        Ok(())
+    }
+
+    /// q = γ(y), q̇ = Gẏ, ġ = γ″ẏ².
+    fn eliminate_loops(
+        &self,
+        data: &mut Data,
+        position: &[f64],
+        velocity: &[f64],
+    ) -> Result<(), DynamicsError> {
+        data.velocity.copy_from_slice(velocity);
+        for actuator in &self.actuators {
+            data.slope[actuator.tree_joint] = 1.0;
+            data.curvature[actuator.tree_joint] = 0.0;
+        }
+        for (joint, k) in self.driven_by.iter().enumerate() {
+            data.tree_position[joint] = position[*k];
+        }
+        for closed_loop in &self.loops {
+            let triangle = &closed_loop.triangle;
+            let stroke = position[closed_loop.actuator];
+            if !triangle.is_solvable(stroke) {
+                return Err(DynamicsError::StrokeOutsideLoop {
+                    closed_loop: closed_loop.name.clone(),
+                    stroke,
+                    lower: triangle.min_stroke,
+                    upper: triangle.max_stroke,
+                });
+            }
+            let (main, barrel) = triangle.solve(stroke);
+            for (joint, value) in [(closed_loop.main, main), (closed_loop.barrel, barrel)] {
+                data.tree_position[joint] = value.position;
+                data.slope[joint] = value.slope;
+                data.curvature[joint] = value.curvature;
+            }
+        }
+        for (joint, k) in self.driven_by.iter().enumerate() {
+            let rate = velocity[*k];
+            data.tree_velocity[joint] = data.slope[joint] * rate;
+            data.tree_drift[joint] = data.curvature[joint] * rate * rate;
+        }
+        Ok(())
+    }
+
+    /// One pass from the ground outwards.
+    fn pose_bodies(&self, data: &mut Data) {
+        for (i, joint) in self.tree.joints.iter().enumerate() {
+            let (q, v) = (data.tree_position[i], data.tree_velocity[i]);
+            let (X_WP, V_WP, A_WP) = match joint.parent {
+                Some(p) => (data.X_WB[p], data.twist[p], data.acceleration[p]),
+                // Gravity as an acceleration of the ground.
+                None => (
+                    Transform::identity(),
+                    Motion::ZERO,
+                    Motion { angular: Vector3::zeros(), linear: -self.gravity },
+                ),
+            };
+            let X_WJ = X_WP * joint.X_PJ;
+            let axis_W = X_WJ.rotation * joint.axis;
+            let (X_WB, S) = match joint.kind {
+                JointKind::Revolute => (
+                    Transform { rotation: X_WJ.rotation * rotation_about(&joint.axis, q), ..X_WJ },
+                    Motion { angular: axis_W, linear: X_WJ.translation.cross(&axis_W) },
+                ),
+                JointKind::Prismatic => (
+                    Transform { translation: X_WJ.translation + axis_W * q, ..X_WJ },
+                    Motion { angular: Vector3::zeros(), linear: axis_W },
+                ),
+            };
+            let S_v = S.scaled(v);
+            let V_WB = V_WP.plus(&S_v);
+            let A_WB = A_WP.plus(&S.scaled(data.tree_drift[i])).plus(&V_WB.cross_motion(&S_v));
+            data.X_WB[i] = X_WB;
+            data.subspace[i] = S;
+            data.twist[i] = V_WB;
+            data.acceleration[i] = A_WB;
+        }
+    }
+
+    /// Pose of the tip, as of the last update.
+    pub fn tip_pose(&self, data: &Data) -> Pose {
+        pose_from(&(data.X_WB[self.tip_body] * self.X_BT))
+    }
+
+    /// Pose of link `link`, an index of [`link_names`](Self::link_names), as of the last update.
+    ///
+    /// # Panics
+    /// If there is no such link.
+    pub fn link_pose(&self, data: &Data, link: usize) -> Pose {
+        let link = &self.tree.links[link];
+        match link.body {
+            Some(body) => pose_from(&(data.X_WB[body] * link.X_BL)),
+            None => pose_from(&link.X_BL),
+        }
+    }
+
+    /// Velocity of the tip, as of the last update.
+    pub fn tip_velocity(&self, data: &Data) -> Twist {
+        let V_WB = &data.twist[self.tip_body];
+        Twist { linear: V_WB.linear_at(&self.tip_point(data)).into(), angular: V_WB.angular.into() }
+    }
+
+    /// J̇ẏ: acceleration of the tip at ÿ = 0, as of the last update.
+    pub fn tip_drift(&self, data: &Data) -> Twist {
+        let p_WT = self.tip_point(data);
+        let V_WB = &data.twist[self.tip_body];
+        let A_WB = &data.acceleration[self.tip_body];
+        let centripetal = V_WB.angular.cross(&V_WB.linear_at(&p_WT));
+        let linear = A_WB.linear_at(&p_WT) + centripetal + self.gravity;
+        Twist { linear: linear.into(), angular: A_WB.angular.into() }
+    }
+
+    /// Writes the tip's Jacobian to `jacobian`: 6 × n, row by row, the three linear rows first, at the tip and in
+    /// world axes, as of the last update.
+    ///
+    /// # Errors
+    /// [`DynamicsError::Length`] unless `jacobian` has 6n values.
+    pub fn tip_jacobian(&self, data: &Data, jacobian: &mut [f64]) -> Result<(), DynamicsError> {
+        let n = self.actuators.len();
+        check_length("jacobian", jacobian, 6 * n)?;
+        jacobian.fill(0.0);
+        let p_WT = self.tip_point(data);
+        for &i in &self.tip_path {
+            let (S, k, slope) = (&data.subspace[i], self.driven_by[i], data.slope[i]);
+            let linear = S.linear_at(&p_WT);
+            for row in 0..3 {
+                jacobian[row * n + k] += slope * linear[row];
+                jacobian[(row + 3) * n + k] += slope * S.angular[row];
+            }
+        }
+        Ok(())
+    }
+
+    /// Writes the tree accelerations q̈ = Gÿ + ġ to `tree_acceleration`, as of the last update.
+    ///
+    /// # Errors
+    /// [`DynamicsError::Length`].
+    pub fn tree_acceleration(
+        &self,
+        data: &Data,
+        acceleration: &[f64],
+        tree_acceleration: &mut [f64],
+    ) -> Result<(), DynamicsError> {
+        check_length("acceleration", acceleration, self.actuators.len())?;
+        check_length("tree_acceleration", tree_acceleration, self.tree.joints.len())?;
+        for (joint, value) in tree_acceleration.iter_mut().enumerate() {
+            *value = data.slope[joint] * acceleration[self.driven_by[joint]] + data.tree_drift[joint];
+        }
+        Ok(())
+    }
+
+    pub(crate) fn tip_point(&self, data: &Data) -> Vector3<f64> {
+        data.X_WB[self.tip_body].point(&self.X_BT.translation)
+    }
+}
+
+fn pose_from(X_WF: &Transform) -> Pose {
+    Pose { position: X_WF.translation.into(), rotation: rows(&X_WF.rotation) }
+}
+
+fn rows(m: &Matrix3<f64>) -> [[f64; 3]; 3] {
+    m.transpose().into()
+}
+
+/// Refuses slices of the wrong length, NaN and infinity.
+#[inline]
+pub(crate) fn check(what: &'static str, values: &[f64], expected: usize) -> Result<(), DynamicsError> {
+    check_length(what, values, expected)?;
+    match values.iter().position(|value| !value.is_finite()) {
+        Some(index) => Err(DynamicsError::NotFinite { what, index, value: values[index] }),
+        None => Ok(()),
+    }
+}
+
+#[inline]
+pub(crate) fn check_length(what: &'static str, values: &[f64], expected: usize) -> Result<(), DynamicsError> {
+    if values.len() == expected {
+        return Ok(());
+    }
+    Err(DynamicsError::Length { what, expected, found: values.len() })
+}

@@ -1,0 +1,25 @@
+//! Every tolerance of the integration tests, each with its reason.
+
+/// Positions, rotations, velocities and Jacobians against the reference, absolute. What the reference's README says
+/// that an exact implementation meets; both sides round to about 1e-14.
+pub const KINEMATICS: f64 = 1e-9;
+
+/// Mass matrix, bias and gravity against the reference, relative to the largest entry. Same source.
+pub const TERMS: f64 = 1e-9;
+
+/// Accelerations against the reference, relative to the largest entry: TERMS times a mass matrix of condition up to
+/// 1e5, less what the published 1e-7 leaves. Same source.
+pub const ACCELERATION: f64 = 1e-7;
+
+/// The reference trajectory after 1 s, absolute. Same source: fourth order.
+pub const TRAJECTORY: f64 = 1e-6;
+
+/// Forward after inverse dynamics, relative: condition 1e5 times rounding 1e-15, with a hundredfold reserve.
+pub const ROUND_TRIP: f64 = 1e-8;
+
+/// Identities that differ in the order of sums alone, relative.
+pub const ROUNDING: f64 = 1e-11;
+
+/// Central differences with step 1e-6, relative to the largest value: truncation 1e-12 times third derivatives of
+/// up to 1e3, rounding 1e-16 / 1e-6.
+pub const DIFFERENCE: f64 = 1e-7;
