@@ -4,7 +4,7 @@
 ///
 /// `inverse_mass_matrix` is M⁻¹ at one configuration, symmetric [1/kg, 1/(kg·m), 1/(kg·m²)];
 /// `damping` holds each joint's [`damping`](crate::AdaptiveController::damping) > 0 [N·s/m or
-/// N·m·s/rad]; `period` is T_s [s]. The coupled velocity loop, sampled with effort held, diverges at 2
+/// N·m·s/rad]; `period` is T_s in seconds. The coupled velocity loop, sampled with effort held, diverges at 2
 /// and rings at more than 1, as one joint alone does; with no coupling the result is the largest of
 /// the joints' own values, and it is never less than that. A controller checks its own joint only, so
 /// a machine checks this at configurations over its workspace.

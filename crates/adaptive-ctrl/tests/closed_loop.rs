@@ -1,4 +1,5 @@
 //! The adaptive controller around a simulated joint ẍ = A·(u + disturbance).
+#![expect(clippy::unwrap_used, reason = "helpers of tests are tests too")]
 
 use adaptive_ctrl::{
     AdaptiveController, Bounds, EffortLimits, Gains, GainsSpec, InverseInertia, JointController, JointSpec,

@@ -1,5 +1,6 @@
 //! The gain files of the crane pass the gate that a user's files pass.
 #![cfg(feature = "serde")]
+#![expect(clippy::unwrap_used, reason = "helpers of tests are tests too")]
 
 use adaptive_ctrl::{
     AdaptiveController, Bounds, EffortLimits, GainTable, InverseInertia, JointController, JointSpec,
