@@ -1,2 +1,35 @@
-//! Safe velocity ranges that keep a joint inside its position limits for ever.
+#![doc = include_str!("../README.md")]
+//!
+//! # Feature flags
+//! - `std` (default): the standard library.
+//! - `libm`: square roots from `libm`, for `no_std` targets; no allocation.
+//! - `build`: builds [`BrakingTable`]s and reads and writes their RON form.
+//!
+//! The crate never opens a file, logs or reads a clock. The argument behind the guarantee is in
+//! `docs/guarantee.md`; [P] is the paper named in `docs/references.md`.
+#![cfg_attr(not(feature = "std"), no_std)]
 #![forbid(unsafe_code)]
+
+#[cfg(feature = "build")]
+mod builder;
+mod command;
+mod hash;
+mod interior;
+mod math;
+mod range;
+#[cfg(feature = "build")]
+mod ron_form;
+mod side;
+mod solve;
+mod table;
+mod zone;
+
+#[cfg(feature = "build")]
+pub use builder::{BuildError, MAX_KNOTS};
+pub use command::{Command, FailSafeReason, Request, Source};
+pub use range::{RangeStatus, SafeRange};
+#[cfg(feature = "build")]
+pub use ron_form::ParseError;
+pub use side::Side;
+pub use table::{BrakingTable, Knot, SCHEMA, TableError, TableParts};
+pub use zone::{SafeZone, ZoneError};

@@ -1,0 +1,64 @@
+//! Builds braking tables. Offline: allocates.
+
+use jbtg::{Planner, Timing};
+
+use crate::side::{Braking, Side};
+use crate::table::{BrakingTable, Knot};
+
+/// Most knots per direction. A joint that needs more uses
+/// [`SafeZone::closed_form`](crate::SafeZone::closed_form).
+pub const MAX_KNOTS: usize = 1 << 16;
+
+/// Knots per braking step where the distance is not piecewise linear.
+const FASTEST_SUBDIVISIONS: u32 = 16;
+
+impl BrakingTable<'static> {
+    /// The braking table of `planner`'s joint.
+    ///
+    /// One knot per braking step with [`Timing::Stretched`], where the distance is linear in between; sixteen with
+    /// [`Timing::Fastest`], where it is convex, so that interpolation errs on the safe side, and by the same
+    /// amount in every step, so that the braking policy keeps the interpolated distance as well. Knots reach to
+    /// the velocity limit or to the first speed that the whole position interval cannot stop.
+    ///
+    /// # Errors
+    /// [`BuildError::TooManyKnots`] if a direction needs more than [`MAX_KNOTS`].
+    pub fn build(planner: &Planner) -> Result<Self, BuildError> {
+        let subdivisions = match planner.spec().timing {
+            Timing::Stretched => 1,
+            Timing::Fastest => FASTEST_SUBDIVISIONS,
+        };
+        let upper = knots(planner, Side::Upper, subdivisions)?;
+        let lower = knots(planner, Side::Lower, subdivisions)?;
+        Ok(Self::owned(*planner.spec(), subdivisions, upper, lower))
+    }
+}
+
+fn knots(planner: &Planner, side: Side, subdivisions: u32) -> Result<Vec<Knot>, BuildError> {
+    let braking = Braking::new(planner, side);
+    let spacing = braking.step / f64::from(subdivisions);
+    let mut knots = vec![Knot { distance: 0.0, velocity: 0.0 }];
+    loop {
+        let Knot { distance, velocity } = knots[knots.len() - 1];
+        if velocity >= braking.velocity || distance > braking.width {
+            return Ok(knots);
+        }
+        if knots.len() == MAX_KNOTS {
+            return Err(BuildError::TooManyKnots { side, limit: MAX_KNOTS });
+        }
+        let velocity = knots.len() as f64 * spacing;
+        knots.push(Knot { distance: braking.distance(planner, velocity), velocity });
+    }
+}
+
+/// Why a table could not be built.
+#[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
+pub enum BuildError {
+    /// Braking within the position interval takes too many periods for a table.
+    #[error("braking towards the {side:?} limit takes more than {limit} knots")]
+    TooManyKnots {
+        /// The limit concerned.
+        side: Side,
+        /// The most knots that a table holds per direction.
+        limit: usize,
+    },
+}

@@ -1,0 +1,250 @@
+//! The safe zone of one joint.
+
+use jbtg::{Interval, Planner};
+
+use crate::range::{RangeStatus, SafeRange};
+use crate::side::{Braking, Side};
+use crate::solve::{Approach, Distances};
+use crate::table::BrakingTable;
+
+/// Safe velocity ranges of one joint.
+///
+/// # Guarantee
+/// From a state whose range is [`RangeStatus::Safe`], whatever sequence of velocities is chosen from the ranges,
+/// every step keeps position, velocity, acceleration and jerk within their limits to 1e-12 of the interval's width,
+/// its interior included, and the range is never empty.
+///
+/// Source: [P, § Safety Calculations], with three departures, without which the guarantee does not hold: the
+/// braking distance is that of braking in steps of one period; the zone is taken at the position that the very
+/// velocity in question leads to, not at the one that the largest reachable velocity would lead to; and
+/// the interior of a step counts.
+#[derive(Clone, Debug)]
+pub struct SafeZone<'a> {
+    planner: Planner,
+    table: Option<BrakingTable<'a>>,
+    upper: Braking,
+    lower: Braking,
+}
+
+impl SafeZone<'static> {
+    /// A zone that computes braking distances from their closed form instead of a table.
+    ///
+    /// The same ranges as with a table for [`Timing::Stretched`](jbtg::Timing), slightly wider ones for
+    /// [`Timing::Fastest`](jbtg::Timing).
+    ///
+    /// # Errors
+    /// [`ZoneError::Narrow`], as for [`SafeZone::new`].
+    pub fn closed_form(planner: Planner) -> Result<Self, ZoneError> {
+        Self::assemble(planner, None)
+    }
+}
+
+impl<'a> SafeZone<'a> {
+    /// The zone of `planner`'s joint with braking distances from `table`.
+    ///
+    /// # Errors
+    /// [`ZoneError::Stale`] if the table was built for other limits, another shape, timing or period,
+    /// [`ZoneError::Unsafe`] if a knot promises less than braking takes, [`ZoneError::Narrow`] if the position
+    /// interval is so narrow that rounding (or the overshoot of the ramp's shape) leaves no room to move.
+    pub fn new(planner: Planner, table: BrakingTable<'a>) -> Result<Self, ZoneError> {
+        if table.built_from() != planner.spec() {
+            return Err(ZoneError::Stale { hash: table.hash() });
+        }
+        for side in [Side::Upper, Side::Lower] {
+            check_promises(&planner, &table, side)?;
+        }
+        Self::assemble(planner, Some(table))
+    }
+
+    fn assemble(planner: Planner, table: Option<BrakingTable<'a>>) -> Result<Self, ZoneError> {
+        let upper = Braking::new(&planner, Side::Upper);
+        let lower = Braking::new(&planner, Side::Lower);
+        let guard = upper.guard + lower.guard;
+        if guard >= 0.5 * upper.width {
+            return Err(ZoneError::Narrow { width: upper.width, guard });
+        }
+        Ok(Self { planner, table, upper, lower })
+    }
+
+    /// The planner whose steps the ranges are made for.
+    #[must_use]
+    pub const fn planner(&self) -> &Planner {
+        &self.planner
+    }
+
+    /// The braking table, if there is one.
+    #[must_use]
+    pub const fn table(&self) -> Option<&BrakingTable<'a>> {
+        self.table.as_ref()
+    }
+
+    /// Distance that the stepwise braking policy travels from `velocity` [rad or m], ≥ 0, in closed form.
+    ///
+    /// Each period takes as much speed away as one period can. The direction is that of the velocity.
+    ///
+    /// Source: [P, § Safety Calculations] brakes in one continuous ramp; see [`SafeZone`].
+    #[must_use]
+    pub fn stopping_distance(&self, velocity: f64) -> f64 {
+        if velocity >= 0.0 {
+            self.upper.distance(&self.planner, velocity)
+        } else {
+            self.lower.distance(&self.planner, -velocity)
+        }
+    }
+
+    /// The velocities that are safe to command as the end of the next step from `position` [rad or m] and
+    /// `velocity` [rad/s or m/s], both taken at the start of the step, where the acceleration is zero.
+    ///
+    /// Total: never empty, whatever the state; [`SafeRange::status`] says what it can promise.
+    #[must_use]
+    pub fn range(&self, position: f64, velocity: f64) -> SafeRange {
+        if !(position.is_finite() && velocity.is_finite()) {
+            return self.blind_range(velocity);
+        }
+        let reachable = self.planner.reachable(velocity);
+        let brake = towards_zero(velocity, reachable);
+        let upper = self.approach(Side::Upper, position, velocity, reachable, brake);
+        let lower = self.approach(Side::Lower, position, velocity, reachable, brake);
+        let mut max = upper.max_velocity().min(-lower.min_velocity());
+        let mut min = upper.min_velocity().max(-lower.max_velocity());
+        let mut status = RangeStatus::Safe;
+        if !self.planner.limits().velocity().contains(velocity) {
+            status = RangeStatus::VelocityOutside;
+        }
+        if max <= brake && upper.cannot_stop() || min >= brake && lower.cannot_stop() {
+            status = RangeStatus::CannotStop;
+        }
+        if upper.is_outside() {
+            status = RangeStatus::PositionOutside;
+            max = max.min(upper.way_back()).max(min);
+        } else if lower.is_outside() {
+            status = RangeStatus::PositionOutside;
+            min = min.max(-lower.way_back()).min(max);
+        }
+        let narrowed = min > reachable.min || max < reachable.max;
+        SafeRange { min, max, brake: brake.clamp(min, max), narrowed, status }
+    }
+
+    fn approach(&self, side: Side, position: f64, velocity: f64, reachable: Interval, brake: f64) -> Approach<'_> {
+        let braking = match side {
+            Side::Upper => &self.upper,
+            Side::Lower => &self.lower,
+        };
+        let distances = match &self.table {
+            Some(table) => {
+                let knots = table.knots(side);
+                Distances { knots: Some(knots), spacing: knots[1].velocity }
+            }
+            None => Distances { knots: None, spacing: braking.step },
+        };
+        Approach {
+            planner: &self.planner,
+            braking,
+            distances,
+            position: braking.sign * position,
+            velocity: braking.sign * velocity,
+            reachable: braking.mirrored(reachable),
+            brake: braking.sign * brake,
+        }
+    }
+
+    /// The range of a state that is not finite: braking as far as the velocity is known.
+    fn blind_range(&self, velocity: f64) -> SafeRange {
+        let brake = if velocity.is_finite() { towards_zero(velocity, self.planner.reachable(velocity)) } else { 0.0 };
+        SafeRange { min: brake, max: brake, brake, narrowed: true, status: RangeStatus::Unknown }
+    }
+}
+
+impl Approach<'_> {
+    /// Whether the position is beyond the limit.
+    fn is_outside(&self) -> bool {
+        self.position > self.braking.limit
+    }
+
+    /// Whether braking at once, from inside, overruns the limit by more than rounding.
+    fn cannot_stop(&self) -> bool {
+        let travel = self.braking.distance(self.planner, self.velocity);
+        self.velocity > 0.0 && self.position + travel > self.braking.limit + self.braking.rounding
+    }
+
+    /// Greatest velocity from beyond the limit that still leads back: braking while it moves out, then half of what
+    /// one period can reach from rest.
+    fn way_back(&self) -> f64 {
+        if self.velocity > 0.0 {
+            self.brake
+        } else {
+            let slowest_return = 0.5 * self.braking.step;
+            (-slowest_return).clamp(self.reachable.min, self.reachable.max)
+        }
+    }
+}
+
+/// The velocity nearest to zero that the braking policy steps to.
+fn towards_zero(velocity: f64, reachable: Interval) -> f64 {
+    if velocity > 0.0 {
+        reachable.min.max(0.0)
+    } else if velocity < 0.0 {
+        reachable.max.min(0.0)
+    } else {
+        0.0
+    }
+}
+
+/// Checks that no knot claims a distance shorter than braking takes.
+fn check_promises(planner: &Planner, table: &BrakingTable<'_>, side: Side) -> Result<(), ZoneError> {
+    let braking = Braking::new(planner, side);
+    let spacing = braking.step / f64::from(table.subdivisions());
+    for knot in table.knots(side) {
+        let needed = braking.distance(planner, knot.velocity);
+        if knot.distance < needed * (1.0 - 1e-12) {
+            return Err(ZoneError::Unsafe { side, velocity: knot.velocity, distance: knot.distance, needed });
+        }
+    }
+    // The braking policy keeps the interpolated distance only if knots lie on braking steps.
+    let found = table.knots(side)[1].velocity;
+    if (found - spacing).abs() > 1e-12 * spacing {
+        return Err(ZoneError::Spacing { side, expected: spacing, found });
+    }
+    Ok(())
+}
+
+/// Why a zone was refused.
+#[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
+pub enum ZoneError {
+    /// The table was built for something else than this planner.
+    #[error("braking table {hash:016x} is stale: it was built for other limits, shape, timing or period; run `cargo xtask tables`")]
+    Stale {
+        /// The table's hash.
+        hash: u64,
+    },
+    /// A knot promises that the joint stops sooner than it does.
+    #[error("braking table is unsafe ({side:?}): it claims {distance} from velocity {velocity}, braking takes {needed}")]
+    Unsafe {
+        /// The limit concerned.
+        side: Side,
+        /// The knot's velocity [rad/s or m/s].
+        velocity: f64,
+        /// The knot's distance [rad or m].
+        distance: f64,
+        /// The distance that braking takes [rad or m].
+        needed: f64,
+    },
+    /// The knots do not lie on braking steps.
+    #[error("braking table's knots ({side:?}) are {found} apart in velocity, braking steps ask for {expected}")]
+    Spacing {
+        /// The limit concerned.
+        side: Side,
+        /// The spacing that braking steps ask for [rad/s or m/s].
+        expected: f64,
+        /// The table's spacing [rad/s or m/s].
+        found: f64,
+    },
+    /// The position interval leaves no room to move.
+    #[error("position interval of width {width} is too narrow: {guard} of it is needed as a guard")]
+    Narrow {
+        /// Width of the position interval [rad or m].
+        width: f64,
+        /// What both ends must keep free [rad or m].
+        guard: f64,
+    },
+}
