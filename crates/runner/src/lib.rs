@@ -1,2 +1,41 @@
 //! The multi-rate loop, the task, training, evaluation and recording.
+//!
+//! One picture of it: a policy acts at 20 Hz, [`motion`] turns each action into a safe velocity and a jerk-bounded way
+//! there, samples it at 1 kHz, tracks it at 2 kHz and integrates the crane's dynamics; [`environment`] makes a task of
+//! it, `training` lets a policy learn it, `evaluation` says how well it did, and [`evidence`] keeps count of every limit
+//! meanwhile. Only this crate opens files, draws seeds and reads the clock.
+//!
+//! # Features
+//! - `training` (default): learning and evaluating policies, which takes burn. Without it the programs about motion
+//!   alone build in seconds.
 #![forbid(unsafe_code)]
+
+pub mod arguments;
+pub mod command;
+pub mod config;
+pub mod draw;
+pub mod environment;
+pub mod evidence;
+pub mod kinematics;
+pub mod machine;
+pub mod motion;
+pub mod observation;
+pub mod region;
+pub mod stage;
+pub mod statistics;
+pub mod store;
+
+#[cfg(feature = "training")]
+pub mod certificate;
+#[cfg(feature = "training")]
+pub mod checkpoint;
+#[cfg(feature = "training")]
+pub mod curriculum;
+#[cfg(feature = "training")]
+pub mod evaluation;
+#[cfg(feature = "training")]
+pub mod progress;
+#[cfg(feature = "training")]
+pub mod tensorboard;
+#[cfg(feature = "training")]
+pub mod training;

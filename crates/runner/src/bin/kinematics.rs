@@ -1,0 +1,93 @@
+//! Commands about motion alone: `tables`, `profile`, `zone`, `dynamics`. Builds without the learner.
+#![forbid(unsafe_code)]
+
+use std::path::{Path, PathBuf};
+use std::process::ExitCode;
+use std::str::FromStr;
+
+use anyhow::{Result, bail};
+use jbtg::{Shape, Timing};
+use runner::arguments::Arguments;
+use runner::command;
+use runner::config::{self, ConfigSpec};
+use runner::kinematics::{self, ProfileRequest, Tables, ZoneFormat};
+
+fn main() -> ExitCode {
+    command::run(dispatch)
+}
+
+fn dispatch(command: &str, words: Vec<String>) -> Result<String> {
+    let mut arguments = Arguments::parse(words, &["check", "json"])?;
+    match command {
+        "tables" => {
+            let what = if arguments.switch("check")? { Tables::Check } else { Tables::Build };
+            let config = configuration(&mut arguments)?;
+            arguments.finish()?;
+            kinematics::tables(&config, what)
+        }
+        "zone" => {
+            let config = configuration(&mut arguments)?;
+            let joint: String = arguments.required("joint")?;
+            let position = arguments.required("position")?;
+            let velocity = arguments.required("velocity")?;
+            let format = if arguments.switch("json")? { ZoneFormat::Json } else { ZoneFormat::Text };
+            arguments.finish()?;
+            kinematics::zone(&config, &joint, position, velocity, format)
+        }
+        "profile" => {
+            let request = ProfileRequest {
+                v1: arguments.required("v1")?,
+                v2: arguments.required("v2")?,
+                dt: arguments.required("dt")?,
+                vmax: arguments.required("vmax")?,
+                amax: arguments.required("amax")?,
+                jmax: arguments.required("jmax")?,
+                shape: arguments.optional("shape")?.map_or(Shape::Smoothstep, |ShapeName(shape)| shape),
+                timing: arguments.optional("timing")?.map_or(Timing::Stretched, |TimingName(timing)| timing),
+                hz: arguments.optional("hz")?.unwrap_or(10_000.0),
+            };
+            arguments.finish()?;
+            kinematics::profile(&request)
+        }
+        "dynamics" => {
+            let config = configuration(&mut arguments)?;
+            let states: PathBuf = arguments.required("states")?;
+            arguments.finish()?;
+            kinematics::dynamics(&config, &states)
+        }
+        _ => bail!("no command is called '{command}'; there are tables, zone, profile and dynamics"),
+    }
+}
+
+fn configuration(arguments: &mut Arguments) -> Result<ConfigSpec> {
+    let path: Option<PathBuf> = arguments.optional("config")?;
+    ConfigSpec::read(path.as_deref().unwrap_or(Path::new(config::DEFAULT)))
+}
+
+struct ShapeName(Shape);
+
+impl FromStr for ShapeName {
+    type Err = anyhow::Error;
+
+    fn from_str(name: &str) -> Result<Self> {
+        match name {
+            "smoothstep" => Ok(Self(Shape::Smoothstep)),
+            "sine-quintic" => Ok(Self(Shape::SineQuintic)),
+            _ => bail!("no shape is called that; there are smoothstep and sine-quintic"),
+        }
+    }
+}
+
+struct TimingName(Timing);
+
+impl FromStr for TimingName {
+    type Err = anyhow::Error;
+
+    fn from_str(name: &str) -> Result<Self> {
+        match name {
+            "stretched" => Ok(Self(Timing::Stretched)),
+            "fastest" => Ok(Self(Timing::Fastest)),
+            _ => bail!("no timing is called that; there are stretched and fastest"),
+        }
+    }
+}

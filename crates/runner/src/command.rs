@@ -1,0 +1,46 @@
+//! What the programs of this crate share: one command, its result on standard output, everything else on standard error.
+
+use std::io::{self, Write};
+use std::process::ExitCode;
+
+use anyhow::Result;
+
+/// Runs `dispatch` with the command and the words after it, prints its result, and turns an error into one line.
+pub fn run(dispatch: impl FnOnce(&str, Vec<String>) -> Result<String>) -> ExitCode {
+    tracing_subscriber::fmt().with_writer(io::stderr).without_time().with_target(false).init();
+    let mut words = std::env::args().skip(1);
+    let command = words.next().unwrap_or_default();
+    let printed = dispatch(&command, words.collect()).and_then(|result| print(&result));
+    match printed {
+        Ok(()) => ExitCode::SUCCESS,
+        Err(error) => {
+            eprintln!("error: {}", one_line(&error));
+            ExitCode::FAILURE
+        }
+    }
+}
+
+fn print(result: &str) -> Result<()> {
+    match io::stdout().lock().write_all(result.as_bytes()) {
+        // A reader that has seen enough (`| head`) is no failure.
+        Err(error) if error.kind() == io::ErrorKind::BrokenPipe => Ok(()),
+        written => Ok(written?),
+    }
+}
+
+/// The error with its causes, on one line.
+#[must_use]
+pub fn one_line(error: &anyhow::Error) -> String {
+    format!("{error:#}").split_whitespace().collect::<Vec<_>>().join(" ")
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn an_error_with_causes_is_one_line() {
+        let error = anyhow::anyhow!("expected:\n  a number").context("in crane.urdf");
+        assert_eq!(one_line(&error), "in crane.urdf: expected: a number");
+    }
+}

@@ -1,0 +1,143 @@
+//! When a stage is mastered.
+
+use std::collections::VecDeque;
+
+use serde::{Deserialize, Serialize};
+
+use crate::config::Curriculum;
+
+/// How an episode ended, as far as the curriculum is concerned.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct EpisodeResult {
+    /// True if the target was reached.
+    pub reached: bool,
+    /// Sum of the rewards.
+    pub return_: f64,
+}
+
+/// State of a stage's curriculum; the checkpoint holds it.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Mastery {
+    /// Results of the last episodes, at most the window's length.
+    recent: VecDeque<EpisodeResult>,
+    /// Episodes finished.
+    pub episodes: u64,
+    /// Episode at which the last confirmation was made.
+    last_confirmation: Option<u64>,
+    /// Success rate of the best confirmation so far; its networks are in the best checkpoint.
+    pub best_confirmed: Option<f64>,
+    /// True once a confirmation passed.
+    pub mastered: bool,
+}
+
+impl Mastery {
+    /// Before the first episode.
+    #[must_use]
+    pub fn new() -> Self {
+        Self {
+            recent: VecDeque::new(),
+            episodes: 0,
+            last_confirmation: None,
+            best_confirmed: None,
+            mastered: false,
+        }
+    }
+
+    /// Counts an episode.
+    pub fn add(&mut self, result: EpisodeResult, curriculum: &Curriculum) {
+        self.episodes += 1;
+        self.recent.push_back(result);
+        while self.recent.len() > curriculum.window {
+            self.recent.pop_front();
+        }
+    }
+
+    /// Share of successes over the window, or over what there is of it; 0 before the first episode.
+    #[must_use]
+    pub fn success_rate(&self) -> f64 {
+        let reached = self.recent.iter().filter(|result| result.reached).count();
+        reached as f64 / self.recent.len().max(1) as f64
+    }
+
+    /// Mean return over the window; 0 before the first episode.
+    #[must_use]
+    pub fn mean_return(&self) -> f64 {
+        self.recent.iter().map(|result| result.return_).sum::<f64>() / self.recent.len().max(1) as f64
+    }
+
+    /// True if the window is full of enough successes and the last confirmation is long enough ago for another.
+    #[must_use]
+    pub fn wants_confirmation(&self, curriculum: &Curriculum) -> bool {
+        let since = self.last_confirmation.map_or(u64::MAX, |last| self.episodes - last);
+        self.recent.len() >= curriculum.window
+            && self.success_rate() >= curriculum.mastered_at
+            && since >= curriculum.confirm_every
+    }
+
+    /// Notes a confirmation; true if it is the best so far.
+    pub fn confirm(&mut self, success_rate: f64, curriculum: &Curriculum) -> bool {
+        self.last_confirmation = Some(self.episodes);
+        self.mastered |= success_rate >= curriculum.confirmed_at;
+        let best = self.best_confirmed.is_none_or(|best| success_rate >= best);
+        if best {
+            self.best_confirmed = Some(success_rate);
+        }
+        best
+    }
+}
+
+impl Default for Mastery {
+    fn default() -> Self {
+        Self::new()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    const CURRICULUM: Curriculum = Curriculum {
+        max_episodes: 100,
+        window: 4,
+        mastered_at: 0.75,
+        confirm_episodes: 10,
+        confirmed_at: 0.9,
+        confirm_every: 3,
+        checkpoint_every: 100,
+    };
+
+    fn after(reached: &[bool]) -> Mastery {
+        let mut mastery = Mastery::new();
+        for &reached in reached {
+            mastery.add(EpisodeResult { reached, return_: 1.0 }, &CURRICULUM);
+        }
+        mastery
+    }
+
+    #[test]
+    fn a_full_window_of_successes_asks_for_confirmation() {
+        assert!(!after(&[true, true, true]).wants_confirmation(&CURRICULUM), "the window is not full");
+        assert!(!after(&[true, false, true, false]).wants_confirmation(&CURRICULUM));
+        assert!(after(&[false, true, true, true]).wants_confirmation(&CURRICULUM));
+        assert!(
+            after(&[false, false, true, true, true, true]).wants_confirmation(&CURRICULUM),
+            "old failures count"
+        );
+    }
+
+    #[test]
+    fn a_failed_confirmation_is_repeated_only_after_a_while() {
+        let mut mastery = after(&[true; 4]);
+        assert!(mastery.confirm(0.5, &CURRICULUM));
+        assert!(!mastery.mastered && !mastery.wants_confirmation(&CURRICULUM));
+        for _ in 0..3 {
+            mastery.add(EpisodeResult { reached: true, return_: 0.0 }, &CURRICULUM);
+        }
+        assert!(mastery.wants_confirmation(&CURRICULUM));
+        assert!(!mastery.confirm(0.4, &CURRICULUM), "worse than the first");
+        assert!(mastery.confirm(0.95, &CURRICULUM) && mastery.mastered);
+        assert_eq!(mastery.best_confirmed, Some(0.95));
+    }
+}

@@ -1,0 +1,13 @@
+//! What the commands about motion alone compute: braking tables, profiles, safe ranges, dynamics.
+//!
+//! Each function returns the text that its command prints.
+
+mod dynamics;
+mod profile;
+mod tables;
+mod zone;
+
+pub use dynamics::dynamics;
+pub use profile::{ProfileRequest, profile};
+pub use tables::{Tables, tables};
+pub use zone::{ZoneFormat, zone};

@@ -1,0 +1,388 @@
+//! The crane with its limits, safe zones and controllers, put together from the files that a configuration names.
+
+use std::path::Path;
+
+use adaptive_ctrl::{AdaptiveController, Bounds, EffortLimits, GainTable, InverseInertia, JointSpec};
+use anyhow::{Context, Result, anyhow, ensure};
+use hiab_dynamics::{Actuator, CraneModel, LoopFile, PlantFile};
+use jbtg::{Interval, Limits, LimitsSpec, Planner, PlannerSpec, SymmetricLimits};
+use safezone::{BrakingTable, SafeZone};
+
+use crate::config::{ConfigSpec, Rates, Reward, Task, TrackingMargin, read_ron};
+use crate::environment::MAX_MOVING;
+use crate::observation::{Scaling, ScalingSpec};
+use crate::region::Regions;
+use crate::store;
+
+/// Postures per moving joint at which the crane is surveyed.
+const SURVEY_POINTS: usize = 7;
+
+/// One joint of the machine.
+#[derive(Debug)]
+pub struct Joint {
+    /// Name as in the URDF.
+    pub name: String,
+    /// Limits of its actuator.
+    pub limits: Limits,
+    /// Largest effort of its actuator, both signs [N·m or N].
+    pub effort_limit: f64,
+    /// Its safe velocities. The limits there are the actuator's less the tracking margin.
+    pub zone: SafeZone<'static>,
+    /// Its controller, as built.
+    pub controller: AdaptiveController,
+}
+
+/// Everything about the crane that does not change while it moves.
+#[derive(Debug)]
+pub struct Machine {
+    model: CraneModel,
+    joints: Vec<Joint>,
+    moving: Vec<usize>,
+    held: Vec<usize>,
+    booms: Vec<usize>,
+    rest_posture: Vec<f64>,
+    survey: Survey,
+    rates: Rates,
+    task: Task,
+    reward: Reward,
+    regions: Regions,
+}
+
+/// Extremes over the postures that the task visits.
+#[derive(Debug)]
+struct Survey {
+    /// Range of the diagonal of M⁻¹, by joint.
+    inverse_inertia: Vec<Interval>,
+    /// Range of every boom's angle [rad].
+    boom_angle: Vec<Interval>,
+    /// Largest angular velocity of every boom [rad/s].
+    boom_speed: Vec<f64>,
+    /// Largest tip speed that a single moving joint causes [m/s].
+    tip_speed: f64,
+}
+
+impl Machine {
+    /// Loads the crane that a configuration names.
+    ///
+    /// # Errors
+    /// A file is missing or wrong, a name in one is not in another, a braking table is stale, or a controller would
+    /// not be stable; the message names file, field and cause.
+    pub fn load(config: &ConfigSpec) -> Result<Self> {
+        let crane = &config.crane;
+        let model = load_model(config)?;
+        let gains: GainTable = read_ron(&crane.gains)?;
+        let regions: Regions = read_ron(&crane.regions)?;
+        let loops: LoopFile = read_ron(&crane.loops)?;
+        let (moving, held, rest_posture) = assign_joints(&model, &config.task)?;
+        let booms = loops
+            .closed_loops
+            .iter()
+            .filter_map(|closed_loop| closed_loop.dependent.first())
+            .filter_map(|joint| model.tree_joint_index(joint))
+            .collect::<Vec<_>>();
+        let survey = survey(&model, config, &moving, &booms, &rest_posture)?;
+        let names: Vec<&str> = model.actuators().iter().map(Actuator::name).collect();
+        let gains = gains.in_order(&names).with_context(|| crane.gains.display().to_string())?;
+        let period = config.rates.controller_period();
+        let joints = model
+            .actuators()
+            .iter()
+            .zip(gains)
+            .zip(&survey.inverse_inertia)
+            .map(|((actuator, gains), inertia)| {
+                let limits = actuator_limits(actuator).with_context(|| in_loops(crane, actuator))?;
+                let zone = load_zone(config, actuator)?;
+                let joint = JointSpec {
+                    period,
+                    inverse_inertia: InverseInertia::try_from(Bounds {
+                        lower: inertia.min,
+                        upper: inertia.max,
+                    })?,
+                    effort_limits: EffortLimits::symmetric(actuator.effort_limit())?,
+                };
+                let controller = AdaptiveController::new(gains, joint)
+                    .with_context(|| format!("{}: {}", crane.gains.display(), actuator.name()))?;
+                let (name, effort_limit) = (actuator.name().to_owned(), actuator.effort_limit());
+                Ok(Joint { name, limits, effort_limit, zone, controller })
+            })
+            .collect::<Result<Vec<_>>>()?;
+        let (rates, task, reward) = (config.rates, config.task.clone(), config.reward);
+        Ok(Self { model, joints, moving, held, booms, rest_posture, survey, rates, task, reward, regions })
+    }
+
+    /// The rigid bodies and the plant.
+    #[must_use]
+    pub fn model(&self) -> &CraneModel {
+        &self.model
+    }
+
+    /// Every joint, in the order of the model's actuators.
+    #[must_use]
+    pub fn joints(&self) -> &[Joint] {
+        &self.joints
+    }
+
+    /// Joints that the policy moves, in the order of its actions.
+    #[must_use]
+    pub fn moving(&self) -> &[usize] {
+        &self.moving
+    }
+
+    /// Joints that their controllers hold.
+    #[must_use]
+    pub fn held(&self) -> &[usize] {
+        &self.held
+    }
+
+    /// Tree joints of the booms that cylinders turn.
+    #[must_use]
+    pub fn booms(&self) -> &[usize] {
+        &self.booms
+    }
+
+    /// Every joint at rest: the held ones where they are held, the moving ones in the middle of their range.
+    #[must_use]
+    pub fn rest_posture(&self) -> &[f64] {
+        &self.rest_posture
+    }
+
+    /// The rates of the loop.
+    #[must_use]
+    pub fn rates(&self) -> Rates {
+        self.rates
+    }
+
+    /// The task.
+    #[must_use]
+    pub fn task(&self) -> &Task {
+        &self.task
+    }
+
+    /// The weights of the reward.
+    #[must_use]
+    pub fn reward(&self) -> Reward {
+        self.reward
+    }
+
+    /// The regions of the curriculum.
+    #[must_use]
+    pub fn regions(&self) -> &Regions {
+        &self.regions
+    }
+
+    /// Constants that bring every feature to the order of one, all from the limits: see
+    /// [`crate::observation::Features`] for the order.
+    ///
+    /// # Panics
+    /// Never: a checked machine has positive ranges.
+    #[must_use]
+    pub fn scaling(&self) -> Scaling {
+        let mut pairs: Vec<(f64, f64)> = Vec::new();
+        let ranges = |ranges: &mut dyn Iterator<Item = Interval>| -> Vec<(f64, f64)> {
+            ranges.map(|range| (0.5 * (range.min + range.max), 0.5 * range.width())).collect()
+        };
+        pairs.extend(self.joints.iter().map(|joint| (0.0, joint.effort_limit)));
+        pairs.extend(ranges(&mut self.joints.iter().map(|joint| joint.limits.position())));
+        pairs.extend(ranges(&mut self.survey.boom_angle.iter().copied()));
+        pairs.extend(self.joints.iter().map(|joint| (0.0, joint.limits.velocity().max)));
+        pairs.extend(self.survey.boom_speed.iter().map(|&speed| (0.0, speed)));
+        let corners = self.regions.workspace().vertices();
+        let extent = |coordinate: fn(&(f64, f64)) -> f64| {
+            let values = corners.iter().map(coordinate);
+            values.fold(Interval::new(f64::INFINITY, f64::NEG_INFINITY), Interval::including)
+        };
+        let (x, z) = (extent(|corner| corner.0), extent(|corner| corner.1));
+        let place = ranges(&mut [x, z].into_iter());
+        pairs.extend(&place);
+        pairs.extend([(0.0, self.survey.tip_speed); 2]);
+        pairs.extend(&place);
+        pairs.push((0.0, 0.5 * x.width().hypot(z.width())));
+        let (offset, scale) = pairs.into_iter().unzip();
+        Scaling::try_from(ScalingSpec { offset, scale }).expect("ranges of a checked machine are positive")
+    }
+}
+
+/// The rigid bodies with plant and payload.
+///
+/// # Errors
+/// A file is missing or wrong; the message names it, the field and the cause.
+pub fn load_model(config: &ConfigSpec) -> Result<CraneModel> {
+    let crane = &config.crane;
+    let urdf = store::read_text(&crane.urdf)?;
+    let loops = store::read_text(&crane.loops)?;
+    let plants = store::read_text(&crane.plants)?;
+    let bare = CraneModel::from_urdf(&urdf, &loops)
+        .with_context(|| format!("{} with {}", crane.urdf.display(), crane.loops.display()))?;
+    let in_plants = || crane.plants.display().to_string();
+    let plants = PlantFile::from_ron(&plants).with_context(in_plants)?;
+    let plant = plants.plant(&crane.plant).with_context(in_plants)?;
+    let model = bare.with_plant(plant).with_context(in_plants)?;
+    Ok(model.with_payload(crane.payload)?)
+}
+
+fn in_loops(crane: &crate::config::Crane, actuator: &Actuator) -> String {
+    format!("{}: actuator {}", crane.loops.display(), actuator.name())
+}
+
+/// Limits of an actuator.
+///
+/// # Errors
+/// A limit that is none; a loaded model has checked them.
+pub fn actuator_limits(actuator: &Actuator) -> Result<Limits> {
+    Ok(Limits::try_from(SymmetricLimits {
+        position: Interval::new(actuator.lower(), actuator.upper()),
+        velocity: actuator.velocity_limit(),
+        acceleration: actuator.acceleration_limit(),
+        jerk: actuator.jerk_limit(),
+    })?)
+}
+
+/// Limits of the reference: the actuator's, less the margin for the tracking error.
+fn reference_limits(limits: &Limits, margin: TrackingMargin) -> Result<Limits> {
+    let part = |interval: Interval, share: f64| {
+        Interval::new(interval.min * (1.0 - share), interval.max * (1.0 - share))
+    };
+    let position = limits.position();
+    let gap = margin.position * position.width();
+    Ok(Limits::try_from(LimitsSpec {
+        position: Interval::new(position.min + gap, position.max - gap),
+        velocity: part(limits.velocity(), margin.velocity),
+        acceleration: part(limits.acceleration(), margin.acceleration),
+        jerk: part(limits.jerk(), margin.jerk),
+    })?)
+}
+
+/// The generator of a joint's reference.
+///
+/// # Errors
+/// Limits and period leave no motion; the message says which.
+pub fn planner(actuator: &Actuator, config: &ConfigSpec) -> Result<Planner> {
+    let ConfigSpec { crane, motion, rates, .. } = config;
+    let limits = actuator_limits(actuator)
+        .and_then(|limits| reference_limits(&limits, motion.tracking_margin))
+        .with_context(|| in_loops(crane, actuator))?;
+    let spec =
+        PlannerSpec { limits, shape: motion.shape, timing: motion.timing, period: rates.policy_period() };
+    Planner::try_from(spec).with_context(|| in_loops(crane, actuator))
+}
+
+/// File of a joint's braking table.
+#[must_use]
+pub fn table_path(config: &ConfigSpec, joint: &str) -> std::path::PathBuf {
+    config.crane.tables.join(format!("{joint}.ron"))
+}
+
+/// The safe zone of a joint, from its table on disk.
+///
+/// # Errors
+/// The table is missing, damaged or stale; the message names the command that builds it.
+pub fn load_zone(config: &ConfigSpec, actuator: &Actuator) -> Result<SafeZone<'static>> {
+    let planner = planner(actuator, config)?;
+    let path = table_path(config, actuator.name());
+    let remedy = || format!("{}: rebuild it with: cargo xtask tables", path.display());
+    let table = read_table(&path).with_context(remedy)?;
+    SafeZone::new(planner, table).with_context(remedy)
+}
+
+fn read_table(path: &Path) -> Result<BrakingTable<'static>> {
+    let text = store::read_text(path)?;
+    BrakingTable::from_ron(&text).map_err(|error| anyhow!("{error}"))
+}
+
+/// Which joints move and which are held where; every joint must be one or the other.
+fn assign_joints(model: &CraneModel, task: &Task) -> Result<(Vec<usize>, Vec<usize>, Vec<f64>)> {
+    let index = |field: &str, joint: &str| {
+        let known = || model.actuators().iter().map(Actuator::name).collect::<Vec<_>>().join(", ");
+        model
+            .actuator_index(joint)
+            .ok_or_else(|| anyhow!("{field}: no actuator is called '{joint}'; there are {}", known()))
+    };
+    let moving = task.moving.iter().map(|joint| index("task.moving", joint)).collect::<Result<Vec<_>>>()?;
+    ensure!(
+        moving.len() <= MAX_MOVING,
+        "task.moving: at most {MAX_MOVING} joints may move, got {}",
+        moving.len()
+    );
+    let mut posture: Vec<f64> =
+        model.actuators().iter().map(|actuator| 0.5 * (actuator.lower() + actuator.upper())).collect();
+    let mut held = Vec::new();
+    for (joint, position) in &task.held {
+        let joint = index("task.held", joint)?;
+        let actuator = &model.actuators()[joint];
+        ensure!(
+            (actuator.lower()..=actuator.upper()).contains(position),
+            "task.held: {} is held at {position}, outside its limits [{}, {}]",
+            actuator.name(),
+            actuator.lower(),
+            actuator.upper()
+        );
+        posture[joint] = *position;
+        held.push(joint);
+    }
+    for (joint, actuator) in model.actuators().iter().enumerate() {
+        let times = moving.iter().chain(&held).filter(|&&assigned| assigned == joint).count();
+        ensure!(
+            times == 1,
+            "task: {} must be named once, in moving or in held; it is named {times} times",
+            actuator.name()
+        );
+    }
+    Ok((moving, held, posture))
+}
+
+/// Visits a grid of postures: every moving joint over its range, with and without the payload.
+fn survey(
+    model: &CraneModel,
+    config: &ConfigSpec,
+    moving: &[usize],
+    booms: &[usize],
+    rest_posture: &[f64],
+) -> Result<Survey> {
+    let joints = model.actuators().len();
+    let empty = Interval::new(f64::INFINITY, f64::NEG_INFINITY);
+    let mut survey = Survey {
+        inverse_inertia: vec![empty; joints],
+        boom_angle: vec![empty; booms.len()],
+        boom_speed: vec![0.0; booms.len()],
+        tip_speed: 0.0,
+    };
+    let unloaded = load_model(&ConfigSpec {
+        crane: crate::config::Crane { payload: 0.0, ..config.crane.clone() },
+        ..config.clone()
+    })?;
+    let still = vec![0.0; joints];
+    let mut diagonal = vec![0.0; joints];
+    let mut jacobian = vec![0.0; 6 * joints];
+    for model in [model, &unloaded] {
+        let mut data = model.new_data();
+        for number in 0..SURVEY_POINTS.pow(moving.len() as u32) {
+            let mut posture = rest_posture.to_vec();
+            let mut rest = number;
+            for &joint in moving {
+                let actuator = &model.actuators()[joint];
+                let share = (rest % SURVEY_POINTS) as f64 / (SURVEY_POINTS - 1) as f64;
+                posture[joint] = actuator.lower() + share * (actuator.upper() - actuator.lower());
+                rest /= SURVEY_POINTS;
+            }
+            model.update_dynamics(&mut data, &posture, &still)?;
+            model.inverse_effective_inertia(&mut data, &mut diagonal)?;
+            for (range, &value) in survey.inverse_inertia.iter_mut().zip(&diagonal) {
+                *range = range.including(value);
+            }
+            for (boom, &tree_joint) in booms.iter().enumerate() {
+                let limit = model.actuators()[model.driving_actuator(tree_joint)].velocity_limit();
+                let speed = data.tree_slope()[tree_joint].abs() * limit;
+                survey.boom_angle[boom] = survey.boom_angle[boom].including(data.tree_position()[tree_joint]);
+                survey.boom_speed[boom] = survey.boom_speed[boom].max(speed);
+            }
+            model.tip_jacobian(&data, &mut jacobian)?;
+            for &joint in moving {
+                let column = [jacobian[joint], jacobian[joints + joint], jacobian[2 * joints + joint]];
+                let speed = column.iter().map(|x| x * x).sum::<f64>().sqrt();
+                let limit = model.actuators()[joint].velocity_limit();
+                survey.tip_speed = survey.tip_speed.max(speed * limit);
+            }
+        }
+    }
+    Ok(survey)
+}

@@ -1,0 +1,319 @@
+//! The multi-rate loop: policy, reference, controller and dynamics, all integer dividers of one tick.
+
+use std::sync::Arc;
+
+use adaptive_ctrl::{AdaptiveController, JointController, Measurement, Reference, Saturation};
+use anyhow::{Context, Result};
+use hiab_dynamics::Data;
+use jbtg::{Extrema, Interval, State, Trajectory};
+use safezone::{Request, Source};
+
+use crate::evidence::Evidence;
+use crate::machine::Machine;
+
+/// The crane in motion: the simulated plant, its controllers, its reference.
+///
+/// One call of [`Motion::advance`] is one policy period. Nothing in it allocates.
+#[derive(Debug)]
+pub struct Motion {
+    machine: Arc<Machine>,
+    data: Data,
+    controllers: Vec<AdaptiveController>,
+    position: Vec<f64>,
+    velocity: Vec<f64>,
+    acceleration: Vec<f64>,
+    effort: Vec<f64>,
+    /// Scratch: velocities before the present tick.
+    velocity_before: Vec<f64>,
+    /// Scratch: another posture than the present one.
+    undisturbed: Vec<f64>,
+    /// State of every joint's reference at the current tick.
+    reference: Vec<State>,
+    /// This period's reference of every moving joint, in the order of the actions.
+    trajectories: Vec<Trajectory>,
+    evidence: Evidence,
+    watch_held_joints: bool,
+}
+
+impl Motion {
+    /// A crane at the middle of its ranges; [`Motion::start`] puts it where it should be.
+    ///
+    /// `watch_held_joints` measures the tip displacement by the held joints at every sample of the reference, which
+    /// costs two forward kinematics each.
+    #[must_use]
+    pub fn new(machine: Arc<Machine>, watch_held_joints: bool) -> Self {
+        let joints = machine.joints().len();
+        let rest = State { position: 0.0, velocity: 0.0, acceleration: 0.0, jerk: 0.0 };
+        Self {
+            data: machine.model().new_data(),
+            controllers: machine.joints().iter().map(|joint| joint.controller.clone()).collect(),
+            position: vec![0.0; joints],
+            velocity: vec![0.0; joints],
+            acceleration: vec![0.0; joints],
+            effort: vec![0.0; joints],
+            velocity_before: vec![0.0; joints],
+            undisturbed: vec![0.0; joints],
+            reference: vec![rest; joints],
+            trajectories: Vec::with_capacity(machine.moving().len()),
+            evidence: Evidence::none(joints),
+            watch_held_joints,
+            machine,
+        }
+    }
+
+    /// Puts the crane to rest with its references at `position`, held by its controllers.
+    ///
+    /// The law has no feedforward, so a joint that carries load rests a little beside its reference; the crane is put
+    /// there, and its first command is what holds it. [`AdaptiveController`]'s `start_holding` says how far.
+    ///
+    /// # Errors
+    /// A position that no loop closes at, or a load that the actuators cannot hold.
+    pub fn start(&mut self, position: &[f64]) -> Result<()> {
+        let machine = Arc::clone(&self.machine);
+        self.velocity.fill(0.0);
+        self.acceleration.fill(0.0);
+        self.position.copy_from_slice(position);
+        // The offset depends on the load where the crane rests, and that on the offset; it is some micrometres, so the
+        // second round changes nothing that matters.
+        for round in 0..2 {
+            machine.model().update_dynamics(&mut self.data, &self.position, &self.velocity)?;
+            self.effort.copy_from_slice(self.data.gravity_effort());
+            for (joint, setup) in machine.joints().iter().enumerate() {
+                if round > 0 {
+                    self.position[joint] += position[joint] - self.reference[joint].position;
+                }
+                let measured = Measurement { position: self.position[joint], velocity: 0.0 };
+                let controller = &mut self.controllers[joint];
+                controller.reset();
+                let reference = controller
+                    .start_holding(measured, self.effort[joint])
+                    .with_context(|| format!("{} cannot be held at {}", setup.name, measured.position))?;
+                self.reference[joint] =
+                    State { position: reference.position, velocity: 0.0, acceleration: 0.0, jerk: 0.0 };
+            }
+        }
+        for (joint, setup) in machine.joints().iter().enumerate() {
+            let extrema = at_rest(self.reference[joint].position);
+            self.evidence.add_reference(joint, &extrema, &setup.limits, &setup.limits);
+        }
+        Ok(())
+    }
+
+    /// One policy period under `actions`, one for each moving joint.
+    ///
+    /// # Errors
+    /// The simulated crane left the range in which its loops close: the limits were not kept.
+    ///
+    /// # Panics
+    /// `actions` has another length than there are moving joints.
+    pub fn advance(&mut self, actions: &[Request]) -> Result<()> {
+        let machine = Arc::clone(&self.machine);
+        assert_eq!(actions.len(), machine.moving().len(), "one action for each moving joint");
+        self.plan(&machine, actions)?;
+        let rates = machine.rates();
+        let tick_period = rates.tick_period();
+        let mut sampled_at = 0;
+        for tick in 0..rates.policy_divider {
+            if tick % rates.reference_divider == 0 {
+                sampled_at = tick;
+                self.sample(&machine, f64::from(tick) * tick_period);
+                if self.watch_held_joints {
+                    self.measure_held_joints(&machine)?;
+                }
+            }
+            if tick % rates.controller_divider == 0 {
+                self.control(f64::from(tick - sampled_at) * tick_period);
+            }
+            self.integrate(&machine, tick_period)?;
+            self.witness(&machine, f64::from(tick + 1 - sampled_at) * tick_period, tick_period);
+        }
+        for (&joint, trajectory) in machine.moving().iter().zip(&self.trajectories) {
+            let end = trajectory.end();
+            self.reference[joint] = end;
+        }
+        Ok(())
+    }
+
+    /// Chooses each moving joint's next velocity within its safe range, and plans the way there.
+    fn plan(&mut self, machine: &Machine, actions: &[Request]) -> Result<()> {
+        self.trajectories.clear();
+        for (&joint, &action) in machine.moving().iter().zip(actions) {
+            let setup = &machine.joints()[joint];
+            let State { position, velocity, .. } = self.reference[joint];
+            let command = setup.zone.command(position, velocity, action);
+            let range = command.range;
+            self.evidence.ranges += 1;
+            self.evidence.narrowed_ranges += u64::from(range.narrowed);
+            self.evidence.empty_ranges += u64::from(!(range.min <= range.max));
+            self.evidence.failsafe_commands += u64::from(matches!(command.source, Source::FailSafe(_)));
+            let trajectory =
+                setup.zone.planner().ramp(position, velocity, command.velocity).with_context(|| {
+                    format!("{}: the zone allowed what the generator cannot do", setup.name)
+                })?;
+            let extrema = trajectory.extrema();
+            self.evidence.add_reference(joint, &extrema, &setup.limits, setup.zone.planner().limits());
+            self.trajectories.push(trajectory);
+        }
+        Ok(())
+    }
+
+    /// Samples the reference of the moving joints at `time` in this period.
+    fn sample(&mut self, machine: &Machine, time: f64) {
+        for (&joint, trajectory) in machine.moving().iter().zip(&self.trajectories) {
+            self.reference[joint] = trajectory.state_at(time);
+        }
+    }
+
+    /// One command of every controller, `ahead` of the reference's last sample.
+    fn control(&mut self, ahead: f64) {
+        for (joint, controller) in self.controllers.iter_mut().enumerate() {
+            let wanted = extrapolate(&self.reference[joint], ahead);
+            let reference = Reference {
+                position: wanted.position,
+                velocity: wanted.velocity,
+                acceleration: wanted.acceleration,
+            };
+            let measured = Measurement { position: self.position[joint], velocity: self.velocity[joint] };
+            let command = controller.step(reference, measured);
+            self.effort[joint] = command.effort;
+            self.evidence.commands += 1;
+            self.evidence.saturated_commands += u64::from(command.saturation != Saturation::None);
+        }
+    }
+
+    fn integrate(&mut self, machine: &Machine, period: f64) -> Result<()> {
+        self.velocity_before.copy_from_slice(&self.velocity);
+        machine
+            .model()
+            .semi_implicit_euler(
+                &mut self.data,
+                &mut self.position,
+                &mut self.velocity,
+                &self.effort,
+                None,
+                period,
+            )
+            .context("the simulated crane cannot go on")
+    }
+
+    /// Notes where every joint really is after a tick, `ahead` of the reference's last sample.
+    ///
+    /// The effort is held over a tick, so the acceleration is the change of velocity over it, and the jerk the change of
+    /// acceleration from one tick to the next.
+    fn witness(&mut self, machine: &Machine, ahead: f64, period: f64) {
+        for (joint, setup) in machine.joints().iter().enumerate() {
+            let acceleration = (self.velocity[joint] - self.velocity_before[joint]) / period;
+            let actual = State {
+                position: self.position[joint],
+                velocity: self.velocity[joint],
+                acceleration,
+                jerk: (acceleration - self.acceleration[joint]) / period,
+            };
+            self.acceleration[joint] = acceleration;
+            let reference = extrapolate(&self.reference[joint], ahead);
+            self.evidence.add_actual(joint, &actual, &reference, &setup.limits);
+        }
+    }
+
+    /// Displacement of the tip by the errors of all held joints together.
+    fn measure_held_joints(&mut self, machine: &Machine) -> Result<()> {
+        self.undisturbed.copy_from_slice(&self.position);
+        for &joint in machine.held() {
+            self.undisturbed[joint] = self.reference[joint].position;
+        }
+        machine.model().update_kinematics(&mut self.data, &self.undisturbed, &self.velocity)?;
+        let wanted = machine.model().tip_pose(&self.data).position;
+        machine.model().update_kinematics(&mut self.data, &self.position, &self.velocity)?;
+        let found = machine.model().tip_pose(&self.data).position;
+        let error = wanted.iter().zip(found).map(|(w, f)| (w - f).powi(2)).sum::<f64>().sqrt();
+        self.evidence.held_joint_tip_error = self.evidence.held_joint_tip_error.max(error);
+        Ok(())
+    }
+
+    /// Tip position [m] and velocity [m/s] in the world, and angle [rad] and angular velocity [rad/s] of every boom.
+    ///
+    /// # Errors
+    /// A loop does not close here.
+    pub fn look(
+        &mut self,
+        boom_angle: &mut [f64],
+        boom_velocity: &mut [f64],
+    ) -> Result<([f64; 3], [f64; 3])> {
+        let machine = Arc::clone(&self.machine);
+        machine.model().update_kinematics(&mut self.data, &self.position, &self.velocity)?;
+        for (boom, &joint) in machine.booms().iter().enumerate() {
+            boom_angle[boom] = self.data.tree_position()[joint];
+            boom_velocity[boom] = self.data.tree_velocity()[joint];
+        }
+        let model = machine.model();
+        Ok((model.tip_pose(&self.data).position, model.tip_velocity(&self.data).linear))
+    }
+
+    /// Tip position in the world [m] with every joint at `posture`.
+    ///
+    /// # Errors
+    /// A loop does not close there.
+    pub fn tip_at(&mut self, posture: &[f64]) -> Result<[f64; 3]> {
+        self.undisturbed.fill(0.0);
+        self.machine.model().update_kinematics(&mut self.data, posture, &self.undisturbed)?;
+        Ok(self.machine.model().tip_pose(&self.data).position)
+    }
+
+    /// The machine that moves.
+    #[must_use]
+    pub fn machine(&self) -> &Machine {
+        &self.machine
+    }
+
+    /// Position of every joint [rad or m].
+    #[must_use]
+    pub fn position(&self) -> &[f64] {
+        &self.position
+    }
+
+    /// Velocity of every joint [rad/s or m/s].
+    #[must_use]
+    pub fn velocity(&self) -> &[f64] {
+        &self.velocity
+    }
+
+    /// Effort of every actuator [N·m or N].
+    #[must_use]
+    pub fn effort(&self) -> &[f64] {
+        &self.effort
+    }
+
+    /// State of every joint's reference.
+    #[must_use]
+    pub fn reference(&self) -> &[State] {
+        &self.reference
+    }
+
+    /// Takes what was seen since the last call.
+    pub fn take_evidence(&mut self) -> Evidence {
+        std::mem::replace(&mut self.evidence, Evidence::none(self.controllers.len()))
+    }
+}
+
+/// The reference between two samples: exact for constant jerk.
+///
+/// A controller that is faster than the reference would otherwise see a staircase, and answer each stair with jerk.
+fn extrapolate(sample: &State, ahead: f64) -> State {
+    let State { position, velocity, acceleration, jerk } = *sample;
+    State {
+        position: position + ahead * (velocity + ahead * (acceleration / 2.0 + ahead * jerk / 6.0)),
+        velocity: velocity + ahead * (acceleration + ahead * jerk / 2.0),
+        acceleration: acceleration + ahead * jerk,
+        jerk,
+    }
+}
+
+fn at_rest(position: f64) -> Extrema {
+    let still = Interval { min: 0.0, max: 0.0 };
+    Extrema {
+        position: Interval { min: position, max: position },
+        velocity: still,
+        acceleration: still,
+        jerk: still,
+    }
+}

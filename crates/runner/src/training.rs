@@ -1,0 +1,445 @@
+//! Training of one stage, from its start or from a checkpoint, until it is mastered.
+
+mod record;
+
+use std::fmt;
+use std::path::{Path, PathBuf};
+use std::sync::Arc;
+use std::time::Instant;
+
+use anyhow::{Context, Result, ensure};
+use sac_burn::{Agent, Outcome, Transition};
+
+use self::record::{EpisodeRecord, LossMeans, Recorder};
+use crate::certificate::{Certificate, Part};
+use crate::checkpoint::{self, Header};
+use crate::config::{ConfigSpec, run_folder};
+use crate::curriculum::{EpisodeResult, Mastery};
+use crate::draw::{Purpose, Stream};
+use crate::environment::{Ending, Environment};
+use crate::evaluation::{self, Evaluation, Plan, Violations};
+use crate::evidence::Evidence;
+use crate::machine::Machine;
+use crate::observation::Scaling;
+use crate::progress::{Display, Progress, Status};
+use crate::stage::Stage;
+use crate::store;
+
+/// Which training is wanted.
+#[derive(Clone, Debug)]
+pub struct Request {
+    /// Name of the run.
+    pub run: String,
+    /// The stage.
+    pub stage: Stage,
+    /// Total number of episodes at which the stage ends at the latest; the configuration's if `None`.
+    pub episodes: Option<u64>,
+    /// How progress is shown.
+    pub display: Display,
+}
+
+/// How a training ended.
+#[derive(Debug)]
+pub struct Finished {
+    /// The evaluation that closed the stage, of the best checkpoint.
+    pub evaluation: Evaluation,
+    /// Training episodes.
+    pub episodes: u64,
+    /// Training steps.
+    pub steps: u64,
+    /// True if a confirmation passed.
+    pub mastered: bool,
+    /// Limits that did not hold, in training and evaluation together.
+    pub violations: Violations,
+    /// The stage.
+    pub stage: Stage,
+    /// Share of successes over the last episodes of the training.
+    pub window_success_rate: f64,
+    /// Folder of the results.
+    pub folder: PathBuf,
+}
+
+impl fmt::Display for Finished {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let Self { stage, episodes, steps, evaluation, .. } = self;
+        let summary = &evaluation.summary;
+        let word = if self.mastered { "mastered" } else { "not mastered" };
+        writeln!(f, "{stage}: {word} after {episodes} episodes, {steps} steps")?;
+        writeln!(f, "  last episodes of training  {:.1} % reached", 100.0 * self.window_success_rate)?;
+        let [low, high] = summary.success_ci95.map(|bound| 100.0 * bound);
+        writeln!(
+            f,
+            "  {} fresh episodes         {:.1} % reached (95 % interval {low:.1} to {high:.1} %)",
+            summary.episodes,
+            100.0 * summary.success_rate
+        )?;
+        let Violations { reference, actual } = self.violations;
+        writeln!(
+            f,
+            "  limits                     {reference} violations of the reference, {actual} of the actual motion"
+        )?;
+        writeln!(
+            f,
+            "  in {}: eval.json, certificate.json, metrics.jsonl, timing.json, checkpoints",
+            self.folder.display()
+        )
+    }
+}
+
+/// A training in progress.
+pub struct Training {
+    folder: PathBuf,
+    config: ConfigSpec,
+    stage: Stage,
+    machine: Arc<Machine>,
+    environment: Environment,
+    scaling: Scaling,
+    agent: Agent,
+    mastery: Mastery,
+    evidence: Evidence,
+    steps: u64,
+    recorder: Recorder,
+    time: TimeSpent,
+}
+
+/// Where the time of a training went [s]; for people, never part of what a seed determines.
+#[derive(Clone, Copy, Debug, Default, serde::Serialize)]
+struct TimeSpent {
+    environment: f64,
+    learner: f64,
+    total: f64,
+    steps: u64,
+    updates: u64,
+}
+
+impl Training {
+    /// Starts a stage from nothing, or from the best checkpoint of the stage before.
+    ///
+    /// # Errors
+    /// The stage before was not trained, the stage itself was already, or the run's folder cannot be written.
+    pub fn start(request: &Request, config: ConfigSpec) -> Result<Self> {
+        let Request { run, stage, .. } = request;
+        let folder = run_folder(run, *stage);
+        ensure!(
+            !latest(&folder).exists(),
+            "{} holds a training already; continue it with --resume, or name another run with --run",
+            folder.display()
+        );
+        let machine = Arc::new(Machine::load(&config)?);
+        let scaling = machine.scaling();
+        let agent = match stage.before() {
+            None => Agent::new(config.learner.clone(), scaling.len(), machine.moving().len(), config.seed)?,
+            Some(before) => {
+                let path = best(&run_folder(run, before));
+                ensure!(
+                    path.exists(),
+                    "stage {stage} starts from the best checkpoint of stage {before}, and {} is missing; first run: \
+                     cargo xtask train --stage {before} --run {run}",
+                    path.display()
+                );
+                inherit(&path, &config, &scaling)?
+            }
+        };
+        store::write_whole(&folder.join("config.ron"), config.to_ron()?.as_bytes())?;
+        let recorder = Recorder::create(&folder)?;
+        let joints = machine.joints().len();
+        Ok(Self {
+            environment: Environment::new(Arc::clone(&machine), false),
+            evidence: Evidence::none(joints),
+            mastery: Mastery::new(),
+            steps: 0,
+            time: TimeSpent::default(),
+            stage: *stage,
+            folder,
+            config,
+            machine,
+            scaling,
+            agent,
+            recorder,
+        })
+    }
+
+    /// Continues a stage from its last checkpoint, bit for bit as if it had never stopped.
+    ///
+    /// # Errors
+    /// There is no checkpoint, it is damaged, or `wanted` asks for another configuration than the run's.
+    pub fn resume(request: &Request, wanted: Option<&ConfigSpec>, seed: Option<u64>) -> Result<Self> {
+        let Request { run, stage, .. } = request;
+        let folder = run_folder(run, *stage);
+        let path = latest(&folder);
+        ensure!(
+            path.exists(),
+            "there is nothing to resume: {} is missing; first run: cargo xtask train --stage {stage} --run {run}",
+            path.display()
+        );
+        let (header, agent) = checkpoint::read(&path)?;
+        ensure!(header.stage == *stage, "{} is of stage {}, not {stage}", path.display(), header.stage);
+        let config = header.config;
+        if let Some(seed) = seed {
+            ensure!(
+                seed == config.seed,
+                "{} was trained with seed {}, not {seed}; leave --seed away, or name another run with --run",
+                folder.display(),
+                config.seed
+            );
+        }
+        if let Some(wanted) = wanted {
+            same_configuration(&config, wanted).with_context(|| {
+                format!("{} cannot be resumed with another configuration", folder.display())
+            })?;
+        }
+        let machine = Arc::new(Machine::load(&config)?);
+        let recorder = Recorder::reopen(&folder, header.metrics_length, header.events_length)?;
+        Ok(Self {
+            environment: Environment::new(Arc::clone(&machine), false),
+            evidence: header.evidence,
+            mastery: header.mastery,
+            steps: header.steps,
+            scaling: header.scaling,
+            time: TimeSpent::default(),
+            stage: *stage,
+            folder,
+            config,
+            machine,
+            agent,
+            recorder,
+        })
+    }
+
+    /// Trains until the stage is mastered or the episodes are used up, evaluates the best checkpoint and writes
+    /// `eval.json` and `certificate.json`.
+    ///
+    /// # Errors
+    /// The learning diverged, the simulation left its range, or a file cannot be written.
+    pub fn run(mut self, request: &Request) -> Result<Finished> {
+        let episodes = request.episodes.unwrap_or(self.config.curriculum.max_episodes);
+        let mut progress = Progress::start(request.display, self.stage.name(), episodes);
+        let started = now();
+        let mut checkpoint_at = self.steps + self.config.curriculum.checkpoint_every;
+        while !self.mastery.mastered && self.mastery.episodes < episodes {
+            self.episode()?;
+            progress.update(Status {
+                episode: self.mastery.episodes,
+                steps: self.steps,
+                success_rate: self.mastery.success_rate(),
+                return_: self.mastery.mean_return(),
+            });
+            if self.steps >= checkpoint_at {
+                checkpoint_at = self.steps + self.config.curriculum.checkpoint_every;
+                self.save_latest()?;
+            }
+        }
+        self.save_latest()?;
+        progress.say("evaluating the best policy");
+        let evaluation = self.close()?;
+        progress.finish();
+        self.time.total = started.elapsed().as_secs_f64();
+        write_json(&self.folder.join("timing.json"), &self.time)?;
+        Ok(Finished {
+            episodes: self.mastery.episodes,
+            steps: self.steps,
+            mastered: self.mastery.mastered,
+            violations: violations(&[&self.evidence, &evaluation.evidence]),
+            stage: self.stage,
+            window_success_rate: self.mastery.success_rate(),
+            folder: self.folder,
+            evaluation,
+        })
+    }
+
+    /// One training episode, its record, and a confirmation if it is time for one.
+    fn episode(&mut self) -> Result<()> {
+        let number = self.mastery.episodes;
+        let mut stream = Stream::of_episode(self.config.seed, Purpose::Training, self.stage, number);
+        let episode = self.environment.draw(self.machine.regions().of(self.stage), &mut stream)?;
+        self.environment.start(&episode)?;
+        let mut observation = vec![0.0; self.scaling.len()];
+        let mut next_observation = observation.clone();
+        let mut action = vec![0.0; self.machine.moving().len()];
+        let mut losses = LossMeans::default();
+        let mut return_ = 0.0;
+        self.environment.observe(&self.scaling, &mut observation);
+        let ending = loop {
+            self.agent.act(&observation, &mut action);
+            let begun = now();
+            let step = self.environment.step(&action)?;
+            self.time.environment += begun.elapsed().as_secs_f64();
+            self.environment.observe(&self.scaling, &mut next_observation);
+            let outcome = match step.ending {
+                None => Outcome::Continues,
+                Some(Ending::Reached) => Outcome::Terminal,
+                Some(Ending::TimeOut) => Outcome::Truncated,
+            };
+            let reward = step.reward as f32;
+            self.agent.remember(&Transition {
+                observation: &observation,
+                action: &action,
+                reward,
+                next_observation: &next_observation,
+                outcome,
+            })?;
+            let begun = now();
+            for _ in 0..self.config.learner.spec().updates_per_step {
+                if let Some(update) = self.agent.update() {
+                    losses.add(&update).with_context(|| format!("learning diverged in episode {number}"))?;
+                    self.time.updates += 1;
+                }
+            }
+            self.time.learner += begun.elapsed().as_secs_f64();
+            self.time.steps += 1;
+            self.steps += 1;
+            return_ += step.reward;
+            std::mem::swap(&mut observation, &mut next_observation);
+            if let Some(ending) = step.ending {
+                break ending;
+            }
+        };
+        let reached = ending == Ending::Reached;
+        self.mastery.add(EpisodeResult { reached, return_ }, &self.config.curriculum);
+        let seen = self.environment.take_evidence();
+        self.evidence.join(&seen);
+        let confirmed = self.confirm_if_due()?;
+        self.recorder.add(&EpisodeRecord {
+            episode: self.mastery.episodes,
+            step: self.steps,
+            reached,
+            return_,
+            length: self.environment.steps(),
+            tip_error: self.environment.distance(),
+            success_rate: self.mastery.success_rate(),
+            mean_return: self.mastery.mean_return(),
+            intervention_rate: seen.intervention_rate(),
+            violations: seen.reference_violations + seen.actual_violations,
+            confirmed,
+            losses: losses.means(),
+        })
+    }
+
+    /// Confirms the stage by a deterministic evaluation if its window of successes asks for one; gives the success rate.
+    fn confirm_if_due(&mut self) -> Result<Option<f64>> {
+        if !self.mastery.wants_confirmation(&self.config.curriculum) {
+            return Ok(None);
+        }
+        let plan = self.plan(Purpose::Confirmation);
+        let policy = self.agent.policy();
+        let evaluation = evaluation::evaluate(policy, &self.scaling, &self.machine, plan)?;
+        let rate = evaluation.summary.success_rate;
+        self.evidence.join(&evaluation.evidence);
+        if self.mastery.confirm(rate, &self.config.curriculum) {
+            self.save(&best(&self.folder))?;
+        }
+        tracing::info!(stage = self.stage.name(), episode = self.mastery.episodes, rate, "confirmation");
+        Ok(Some(rate))
+    }
+
+    fn plan(&self, purpose: Purpose) -> Plan {
+        let episodes = self.config.curriculum.confirm_episodes;
+        Plan { stage: self.stage, episodes, seed: self.config.seed, purpose }
+    }
+
+    /// Evaluates the best policy on episodes never seen before and writes the results.
+    ///
+    /// Without any confirmation the present networks are the best there are. What is found here does not enter the
+    /// state of the training, so that a training that stopped here and went on equals one that never stopped.
+    fn close(&mut self) -> Result<Evaluation> {
+        let path = best(&self.folder);
+        if self.mastery.best_confirmed.is_none() {
+            self.save(&path)?;
+        }
+        let (_, agent) = checkpoint::read(&path)?;
+        let plan = self.plan(Purpose::Evaluation);
+        let evaluation = evaluation::evaluate(agent.policy(), &self.scaling, &self.machine, plan)?;
+        write_json(&self.folder.join("eval.json"), &evaluation.summary)?;
+        let names = || self.machine.joints().iter().map(|joint| joint.name.as_str());
+        let certificate = Certificate {
+            schema: 1,
+            stage: self.stage,
+            seed: self.config.seed,
+            plant: &self.config.crane.plant,
+            episodes: self.mastery.episodes,
+            steps: self.steps,
+            violations: violations(&[&self.evidence, &evaluation.evidence]),
+            training: Part::new(names(), &self.evidence),
+            evaluation: Part::new(names(), &evaluation.evidence),
+        };
+        write_json(&self.folder.join("certificate.json"), &certificate)?;
+        Ok(evaluation)
+    }
+
+    fn save_latest(&mut self) -> Result<()> {
+        let path = latest(&self.folder);
+        self.save(&path)
+    }
+
+    fn save(&mut self, path: &Path) -> Result<()> {
+        let (metrics_length, events_length) = self.recorder.sync()?;
+        let header = Header {
+            config: self.config.clone(),
+            stage: self.stage,
+            mastery: self.mastery.clone(),
+            steps: self.steps,
+            evidence: self.evidence.clone(),
+            metrics_length,
+            events_length,
+            scaling: self.scaling.clone(),
+        };
+        checkpoint::write(path, &header, &self.agent)
+    }
+}
+
+/// Limits that did not hold in any part.
+fn violations(parts: &[&Evidence]) -> Violations {
+    Violations {
+        reference: parts.iter().map(|part| part.reference_violations).sum(),
+        actual: parts.iter().map(|part| part.actual_violations).sum(),
+    }
+}
+
+/// The newest checkpoint of a stage.
+#[must_use]
+pub fn latest(folder: &Path) -> PathBuf {
+    folder.join("checkpoints").join("latest")
+}
+
+/// The checkpoint of a stage that was best when it was confirmed.
+#[must_use]
+pub fn best(folder: &Path) -> PathBuf {
+    folder.join("checkpoints").join("best")
+}
+
+/// The agent of the stage before, ready to go on in this one: its replay is kept, since the regions are nested and what
+/// was seen in the smaller one is as true in the larger.
+fn inherit(path: &Path, config: &ConfigSpec, scaling: &Scaling) -> Result<Agent> {
+    let (header, agent) = checkpoint::read(path)?;
+    same_configuration(&header.config, config)
+        .with_context(|| format!("{} was trained with another configuration", path.display()))?;
+    ensure!(
+        header.scaling == *scaling,
+        "{} scales its observations differently: the limits of the crane changed since; train its stage again",
+        path.display()
+    );
+    Ok(agent)
+}
+
+/// Refuses another configuration and says which field differs.
+fn same_configuration(trained: &ConfigSpec, wanted: &ConfigSpec) -> Result<()> {
+    let (trained, wanted) = (trained.to_ron()?, wanted.to_ron()?);
+    let differing = trained.lines().zip(wanted.lines()).find(|(ours, theirs)| ours != theirs);
+    match differing {
+        None => Ok(()),
+        Some((ours, theirs)) => {
+            anyhow::bail!("the run has `{}`, wanted is `{}`", ours.trim(), theirs.trim())
+        }
+    }
+}
+
+fn write_json(path: &Path, value: &impl serde::Serialize) -> Result<()> {
+    let mut json = serde_json::to_vec_pretty(value)?;
+    json.push(b'\n');
+    store::write_whole(path, &json)
+}
+
+#[expect(clippy::disallowed_methods, reason = "the share of environment and learner is for a person to see")]
+fn now() -> Instant {
+    Instant::now()
+}
