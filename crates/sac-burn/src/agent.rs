@@ -251,8 +251,7 @@ impl Agent {
     /// [`TransitionError`] if a length is wrong, a number is not finite or the action leaves [−1, 1]; nothing is
     /// stored then.
     pub fn remember(&mut self, transition: &Transition<'_>) -> Result<(), TransitionError> {
-        transition.check(self.observation_dim, self.action_dim)?;
-        self.replay.push(transition);
+        self.replay.push(transition)?;
         self.steps += 1;
         Ok(())
     }

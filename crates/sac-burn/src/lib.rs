@@ -5,6 +5,7 @@
 //!
 //! - [`Config`]: every hyperparameter, checked; [`Config::table_1`] is the paper's.
 //! - [`Agent`]: acts, remembers, updates, and saves and loads itself so that resuming continues bit for bit.
+//! - [`Replay`]: the memory that the agent learns from, in one allocation.
 //! - [`Policy`]: the deterministic policy alone, for evaluation and deployment.
 //!
 //! # Speed
@@ -37,7 +38,8 @@ mod wire;
 pub use agent::{Agent, AgentError, ReplayStart};
 pub use config::{Config, ConfigError, ConfigSpec};
 pub use losses::Losses;
+pub use noise::Noise;
 pub use policy::Policy;
-pub use replay::ReplayAllocationError;
+pub use replay::{Batch, Replay, ReplayAllocationError};
 pub use transition::{Outcome, Transition, TransitionError};
 pub use wire::CheckpointError;

@@ -271,3 +271,6 @@ impl Optimizer {
         adam.step(self.steps)
     }
 }
+
+#[cfg(test)]
+mod tests;

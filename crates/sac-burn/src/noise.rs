@@ -6,16 +6,19 @@ use rand_core::{RngCore, SeedableRng};
 use rand_xoshiro::Xoshiro256PlusPlus;
 use serde::{Deserialize, Serialize};
 
-/// xoshiro256++, whose state a checkpoint holds. Equal states give equal numbers on every machine for
-/// [`Noise::index`] and [`Noise::uniform`]; [`Noise::fill_normal`] also depends on the platform's `ln`, `sin`, `cos`.
+/// The one source of randomness: xoshiro256++, whose state a checkpoint holds.
+///
+/// Equal states give equal indices and uniform numbers on every machine; normal numbers also depend on the
+/// platform's `ln`, `sin` and `cos`.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(transparent)]
-pub(crate) struct Noise {
+pub struct Noise {
     generator: Xoshiro256PlusPlus,
 }
 
 impl Noise {
-    pub(crate) fn new(seed: u64) -> Self {
+    /// The generator that `seed` stands for.
+    pub fn new(seed: u64) -> Self {
         Self { generator: Xoshiro256PlusPlus::seed_from_u64(seed) }
     }
 

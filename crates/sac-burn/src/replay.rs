@@ -1,7 +1,7 @@
 //! The replay memory: a ring of transitions in one flat host allocation.
 
 use crate::noise::Noise;
-use crate::transition::Transition;
+use crate::transition::{Transition, TransitionError};
 
 /// Ring of the last `capacity` transitions.
 ///
@@ -10,7 +10,7 @@ use crate::transition::Transition;
 /// capacity is reserved once and never moved; the operating system backs only what was written. One million
 /// transitions of 32 observations and 3 actions take 276 MB.
 #[derive(Debug)]
-pub(crate) struct Replay {
+pub struct Replay {
     observation_dim: usize,
     action_dim: usize,
     capacity: usize,
@@ -21,17 +21,17 @@ pub(crate) struct Replay {
 
 /// A drawn batch, each part row-major.
 #[derive(Clone, Debug, Default)]
-pub(crate) struct Batch {
+pub struct Batch {
     /// [batch, observation].
-    pub(crate) observations: Vec<f32>,
+    pub observations: Vec<f32>,
     /// [batch, action].
-    pub(crate) actions: Vec<f32>,
+    pub actions: Vec<f32>,
     /// [batch, observation].
-    pub(crate) next_observations: Vec<f32>,
+    pub next_observations: Vec<f32>,
     /// [batch].
-    pub(crate) rewards: Vec<f32>,
+    pub rewards: Vec<f32>,
     /// [batch]: 0 where the step was terminal, else 1.
-    pub(crate) continuations: Vec<f32>,
+    pub continuations: Vec<f32>,
 }
 
 /// The replay memory could not be allocated.
@@ -46,11 +46,18 @@ pub struct ReplayAllocationError {
 
 impl Replay {
     /// Reserves the whole capacity.
-    pub(crate) fn new(
+    ///
+    /// # Errors
+    /// [`ReplayAllocationError`] if there is no address space for it.
+    ///
+    /// # Panics
+    /// If `capacity` is 0.
+    pub fn new(
         observation_dim: usize,
         action_dim: usize,
         capacity: usize,
     ) -> Result<Self, ReplayAllocationError> {
+        assert!(capacity > 0, "a replay memory must hold something");
         let row = 2 * observation_dim + action_dim + 2;
         let error = ReplayAllocationError { capacity, row };
         let mut rows = Vec::new();
@@ -58,11 +65,18 @@ impl Replay {
         Ok(Self { observation_dim, action_dim, capacity, next: 0, rows })
     }
 
-    pub(crate) fn capacity(&self) -> usize {
+    /// Transitions that it can hold.
+    pub fn capacity(&self) -> usize {
         self.capacity
     }
 
-    pub(crate) fn len(&self) -> usize {
+    /// Whether it holds no transition.
+    pub fn is_empty(&self) -> bool {
+        self.rows.is_empty()
+    }
+
+    /// Transitions that it holds.
+    pub fn len(&self) -> usize {
         self.rows.len() / self.row()
     }
 
@@ -81,8 +95,13 @@ impl Replay {
         2 * self.observation_dim + self.action_dim + 2
     }
 
-    /// Appends a transition that has passed its check; overwrites the oldest if the ring is full.
-    pub(crate) fn push(&mut self, transition: &Transition<'_>) {
+    /// Appends a transition; overwrites the oldest if the ring is full.
+    ///
+    /// # Errors
+    /// [`TransitionError`] if a length is wrong, a number is not finite or the action leaves [−1, 1]; nothing is
+    /// stored then.
+    pub fn push(&mut self, transition: &Transition<'_>) -> Result<(), TransitionError> {
+        transition.check(self.observation_dim, self.action_dim)?;
         let tail = [transition.reward, transition.outcome.continuation()];
         let parts = [transition.observation, transition.action, transition.next_observation, tail.as_slice()];
         if self.len() < self.capacity {
@@ -97,18 +116,24 @@ impl Replay {
             }
             self.next = (self.next + 1) % self.capacity;
         }
+        Ok(())
     }
 
-    pub(crate) fn clear(&mut self) {
+    /// Forgets every transition; the allocation stays.
+    pub fn clear(&mut self) {
         self.rows.clear();
         self.next = 0;
     }
 
-    /// Draws `size` transitions uniformly and with replacement into `batch`. The memory must not be empty.
-    pub(crate) fn sample(&self, size: usize, noise: &mut Noise, batch: &mut Batch) {
+    /// Draws `size` transitions uniformly and with replacement into `batch`, whose former content goes.
+    ///
+    /// # Panics
+    /// If the memory is empty and `size` is not 0.
+    pub fn sample(&self, size: usize, noise: &mut Noise, batch: &mut Batch) {
         let (o, a, row) = (self.observation_dim, self.action_dim, self.row());
         batch.clear();
         let count = self.len();
+        assert!(count > 0 || size == 0, "cannot draw from an empty replay memory");
         let starts: Vec<usize> = (0..size).map(|_| noise.index(count) * row).collect();
         for start in starts {
             let row = &self.rows[start..start + row];
@@ -169,13 +194,14 @@ mod tests {
     fn push(replay: &mut Replay, value: f32, outcome: Outcome) {
         let observation = [value, value + 0.25];
         let next_observation = [value + 0.5, value + 0.75];
-        replay.push(&Transition {
+        let transition = Transition {
             observation: &observation,
             action: &[value / 100.0],
             reward: -value,
             next_observation: &next_observation,
             outcome,
-        });
+        };
+        replay.push(&transition).unwrap();
     }
 
     fn rewards(replay: &Replay) -> Vec<f32> {

@@ -25,7 +25,7 @@ pub enum CheckpointError {
     #[error("cannot read or write the stream: {0}")]
     Io(#[source] io::Error),
     /// The stream does not begin as this kind of file does.
-    #[error("not a {expected} file: it begins with {found:?}")]
+    #[error("not a file of kind {expected:?}: it begins with {:?}", String::from_utf8_lossy(found))]
     WrongMagic {
         /// What was asked for.
         expected: &'static str,
