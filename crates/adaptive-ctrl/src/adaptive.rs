@@ -31,7 +31,8 @@ use crate::{
 /// - φ̂₁ and φ̂₂ have ceilings (a projection), set at construction at what the sampled loop bears
 ///   over the whole range of inertia: ½(k₅ + k₆φ̂₂)·A_max·T_s ≤ [`MAX_DAMPING_PER_TICK`] and
 ///   ½(k₁ + k₂φ̂₁) ≤ ½k₅·A_min. [`adaptation`](Self::adaptation) says when one is reached.
-/// - There is no feedforward, so a joint under constant load keeps an error of load / stiffness,
+/// - The reference may bring an effort that a model expects; it is added to u. Without it, or where the
+///   model is wrong, a joint under constant load keeps an error of load / stiffness,
 ///   stiffness 1 + ¼(k₁ + k₂φ̂₁)(k₅ + k₆φ̂₂). [`start_holding`](JointController::start_holding) starts
 ///   there instead of dropping to it.
 ///
@@ -171,8 +172,9 @@ impl JointController for AdaptiveController {
         let e1 = measurement.position - reference.position;
         let e2 = measurement.velocity - reference.velocity;
         let (z1, z2, u) = self.law(e1, e2);
+        let u = reference.effort + u;
         // Infinite inputs end up in e₁ or e₂; finite ones that overflow do in u.
-        if !(e1.is_finite() && e2.is_finite() && !u.is_nan()) {
+        if !(e1.is_finite() && e2.is_finite() && reference.effort.is_finite() && !u.is_nan()) {
             self.adaptation = Adaptation::Frozen;
             return Command { effort: self.last_effort, saturation: Saturation::None, input: Input::Refused };
         }

@@ -11,10 +11,15 @@ pub struct Reference {
     pub velocity: f64,
     /// ẍ_r [rad/s² or m/s²].
     ///
-    /// No controller of this crate uses it: the law of the paper has no feedforward and treats ẍ_r
-    /// as a bounded disturbance (it is part of d̄₂ there). It is in the interface so that one
-    /// that does can take its place.
+    /// No controller of this crate uses it: the law of the paper treats ẍ_r as a bounded disturbance
+    /// (it is part of d̄₂ there). It is in the interface so that one that does can take its place.
     pub acceleration: f64,
+    /// Feedforward: the effort that a model of the machine expects here, 0 without a model [N·m or N].
+    ///
+    /// Every controller of this crate adds it to what its law asks for. The paper has none. It changes
+    /// nothing in the proof, where what it leaves of load and coupling takes their place in the bounded
+    /// uncertainty; `docs/control.md` says what it is worth.
+    pub effort: f64,
 }
 
 /// Where one joint is now. Any values are legal; see [`Input::Refused`] for non-finite ones.
@@ -72,7 +77,8 @@ pub trait JointController {
     /// Takes over a joint that `effort` holds now: gives the reference for which the next
     /// [`step`](Self::step) commands that effort, and brings the controller's state to rest there.
     ///
-    /// The reference has the measured velocity, so e₂ = 0, and no acceleration. Start the reference
+    /// With a feedforward that stays, `effort` is what it leaves to the law. The reference has the measured
+    /// velocity, so e₂ = 0, no acceleration and no feedforward. Start the reference
     /// generator from it: a start at the measured position instead would command no effort at all
     /// with a law that has no feedforward, and a loaded joint would drop until its error has grown
     /// to what holds it.

@@ -64,7 +64,7 @@ impl From<PdGains> for PdGainsSpec {
     }
 }
 
-/// u = −P·e₁ − D·e₂, cut to the effort limits.
+/// u = u_r − P·e₁ − D·e₂ with the feedforward u_r, cut to the effort limits.
 ///
 /// Under constant load it keeps an error of load / P.
 #[derive(Clone, Debug, PartialEq)]
@@ -92,8 +92,8 @@ impl JointController for PdController {
     fn step(&mut self, reference: Reference, measurement: Measurement) -> Command {
         let e1 = measurement.position - reference.position;
         let e2 = measurement.velocity - reference.velocity;
-        let u = -self.gains.proportional * e1 - self.gains.derivative * e2;
-        if !(e1.is_finite() && e2.is_finite() && !u.is_nan()) {
+        let u = reference.effort - self.gains.proportional * e1 - self.gains.derivative * e2;
+        if !(e1.is_finite() && e2.is_finite() && reference.effort.is_finite() && !u.is_nan()) {
             return Command { effort: self.last_effort, saturation: Saturation::None, input: Input::Refused };
         }
         let (effort, saturation) = self.effort_limits.saturate(u);
@@ -112,6 +112,7 @@ impl JointController for PdController {
             position: measurement.position + effort / self.gains.proportional,
             velocity: measurement.velocity,
             acceleration: 0.0,
+            effort: 0.0,
         })
     }
 }
@@ -136,7 +137,7 @@ mod tests {
 
     #[test]
     fn effort_is_the_weighted_errors() {
-        let reference = Reference { position: 0.5, velocity: 0.1, acceleration: 9.0 };
+        let reference = Reference { position: 0.5, velocity: 0.1, acceleration: 9.0, effort: 0.0 };
         let command = controller().step(reference, Measurement { position: 0.6, velocity: -0.2 });
         assert!((command.effort - (-40.0 * 0.1 - 8.0 * -0.3)).abs() < 1e-12, "{command:?}");
         assert_eq!(command.saturation, Saturation::None);

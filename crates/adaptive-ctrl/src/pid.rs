@@ -90,8 +90,10 @@ impl JointController for PidController {
     fn step(&mut self, reference: Reference, measurement: Measurement) -> Command {
         let e1 = measurement.position - reference.position;
         let e2 = measurement.velocity - reference.velocity;
-        let u = self.integral_effort - self.gains.proportional * e1 - self.gains.derivative * e2;
-        if !(e1.is_finite() && e2.is_finite() && !u.is_nan()) {
+        let u = reference.effort + self.integral_effort
+            - self.gains.proportional * e1
+            - self.gains.derivative * e2;
+        if !(e1.is_finite() && e2.is_finite() && reference.effort.is_finite() && !u.is_nan()) {
             return Command { effort: self.last_effort, saturation: Saturation::None, input: Input::Refused };
         }
         let (effort, saturation) = self.effort_limits.saturate(u);
@@ -118,7 +120,12 @@ impl JointController for PidController {
         check_hold(measurement, effort, self.effort_limits)?;
         self.integral_effort = effort;
         self.last_effort = effort;
-        Ok(Reference { position: measurement.position, velocity: measurement.velocity, acceleration: 0.0 })
+        Ok(Reference {
+            position: measurement.position,
+            velocity: measurement.velocity,
+            acceleration: 0.0,
+            effort: 0.0,
+        })
     }
 }
 

@@ -45,7 +45,12 @@ impl Joint {
 /// Sine of 0.1 m and 0.1 m/s about 0.3 m.
 fn sine(tick: u32) -> Reference {
     let t = f64::from(tick) * PERIOD;
-    Reference { position: 0.3 + 0.1 * t.sin(), velocity: 0.1 * t.cos(), acceleration: -0.1 * t.sin() }
+    Reference {
+        position: 0.3 + 0.1 * t.sin(),
+        velocity: 0.1 * t.cos(),
+        acceleration: -0.1 * t.sin(),
+        effort: 0.0,
+    }
 }
 
 proptest! {

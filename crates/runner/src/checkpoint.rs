@@ -3,7 +3,7 @@
 //! Layout: magic, version, length and checksum of the header, the header as JSON, then the agent's own bytes, which
 //! carry their own length and checksum. The file is written whole or not at all, and a part of one is refused.
 
-use std::io::{Read, Write};
+use std::io::Read;
 use std::path::Path;
 
 use anyhow::{Context, Result, anyhow, bail, ensure};

@@ -1,5 +1,6 @@
 //! The configuration of a run: one RON file that alone reproduces it.
 
+use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 
 use anyhow::{Context, Result, anyhow};
@@ -58,10 +59,30 @@ pub struct Crane {
     pub payload: f64,
     /// Gains of the adaptive controller.
     pub gains: PathBuf,
+    /// What the controller knows of the crane.
+    pub feedforward: Feedforward,
     /// Folder of the braking tables, one per joint.
     pub tables: PathBuf,
     /// Regions of the curriculum.
     pub regions: PathBuf,
+}
+
+/// What the controller knows of the crane beside its errors.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+pub enum Feedforward {
+    /// Nothing: the paper's law.
+    None,
+    /// The effort that the reference needs by the model of the crane and its plant, without any payload.
+    Nominal,
+}
+
+/// A method of integration.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+pub enum Integrator {
+    /// First order, one evaluation of the dynamics; its positions run ahead of an accelerated joint.
+    SemiImplicitEuler,
+    /// The classical Runge-Kutta method of fourth order, four evaluations.
+    Rk4,
 }
 
 /// Rates as integer dividers of one tick, so that nothing drifts.
@@ -70,6 +91,8 @@ pub struct Crane {
 pub struct Rates {
     /// Ticks per second: the rate of integration.
     pub integration_hz: u32,
+    /// How the simulated crane is integrated over a tick.
+    pub integrator: Integrator,
     /// The controller acts on every so many ticks.
     pub controller_divider: u32,
     /// The reference is sampled on every so many ticks.
@@ -79,15 +102,15 @@ pub struct Rates {
 }
 
 /// How the reference moves.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Motion {
     /// Shape of the acceleration ramps.
     pub shape: jbtg::Shape,
     /// How a velocity change is spread over a period.
     pub timing: jbtg::Timing,
-    /// What the reference leaves of each limit to the actual motion.
-    pub tracking_margin: TrackingMargin,
+    /// What the reference of each joint leaves of the limits to the actual motion.
+    pub tracking_margin: BTreeMap<String, TrackingMargin>,
 }
 
 /// Shares of an actuator's limits that the reference leaves to the tracking error, in [0, 1).
@@ -172,7 +195,7 @@ pub enum ConfigError {
     #[error("{field} must be {expected}, got {value}")]
     OutOfRange {
         /// Which field.
-        field: &'static str,
+        field: String,
         /// What it may be.
         expected: &'static str,
         /// What it is.
@@ -212,17 +235,18 @@ impl ConfigSpec {
         if self.task.moving.is_empty() {
             return Err(ConfigError::NothingMoves);
         }
-        let margin = self.motion.tracking_margin;
-        let shares = [
-            ("motion.tracking_margin.position", margin.position, 0.5),
-            ("motion.tracking_margin.velocity", margin.velocity, 1.0),
-            ("motion.tracking_margin.acceleration", margin.acceleration, 1.0),
-            ("motion.tracking_margin.jerk", margin.jerk, 1.0),
-        ];
-        for (field, value, end) in shares {
-            if !(0.0..end).contains(&value) {
-                let expected = if end == 0.5 { "in [0, 0.5)" } else { "in [0, 1)" };
-                return Err(ConfigError::OutOfRange { field, expected, value });
+        for (joint, margin) in &self.motion.tracking_margin {
+            let shares = [
+                ("position", margin.position, 0.5, "in [0, 0.5)"),
+                ("velocity", margin.velocity, 1.0, "in [0, 1)"),
+                ("acceleration", margin.acceleration, 1.0, "in [0, 1)"),
+                ("jerk", margin.jerk, 1.0, "in [0, 1)"),
+            ];
+            for (quantity, value, end, expected) in shares {
+                if !(0.0..end).contains(&value) {
+                    let field = format!("motion.tracking_margin of {joint}: {quantity}");
+                    return Err(ConfigError::OutOfRange { field, expected, value });
+                }
             }
         }
         let positive = [
@@ -237,7 +261,11 @@ impl ConfigSpec {
         ];
         for (field, value) in positive {
             if !(value.is_finite() && value > 0.0) {
-                return Err(ConfigError::OutOfRange { field, expected: "finite and > 0", value });
+                return Err(ConfigError::OutOfRange {
+                    field: field.into(),
+                    expected: "finite and > 0",
+                    value,
+                });
             }
         }
         let not_negative = [
@@ -249,7 +277,11 @@ impl ConfigSpec {
         ];
         for (field, value) in not_negative {
             if !(value.is_finite() && value >= 0.0) {
-                return Err(ConfigError::OutOfRange { field, expected: "finite and ≥ 0", value });
+                return Err(ConfigError::OutOfRange {
+                    field: field.into(),
+                    expected: "finite and ≥ 0",
+                    value,
+                });
             }
         }
         let rates = [
@@ -258,7 +290,7 @@ impl ConfigSpec {
         ];
         for (field, value) in rates {
             if !(0.0..=1.0).contains(&value) {
-                return Err(ConfigError::OutOfRange { field, expected: "in [0, 1]", value });
+                return Err(ConfigError::OutOfRange { field: field.into(), expected: "in [0, 1]", value });
             }
         }
         Ok(())

@@ -16,6 +16,8 @@ pub mod config;
 pub mod draw;
 pub mod environment;
 pub mod evidence;
+mod feedforward;
+mod interpolation;
 pub mod kinematics;
 pub mod machine;
 pub mod motion;

@@ -8,7 +8,7 @@ use hiab_dynamics::{Actuator, CraneModel, LoopFile, PlantFile};
 use jbtg::{Interval, Limits, LimitsSpec, Planner, PlannerSpec, SymmetricLimits};
 use safezone::{BrakingTable, SafeZone};
 
-use crate::config::{ConfigSpec, Rates, Reward, Task, TrackingMargin, read_ron};
+use crate::config::{ConfigSpec, Feedforward, Rates, Reward, Task, TrackingMargin, read_ron};
 use crate::environment::MAX_MOVING;
 use crate::observation::{Scaling, ScalingSpec};
 use crate::region::Regions;
@@ -36,6 +36,7 @@ pub struct Joint {
 #[derive(Debug)]
 pub struct Machine {
     model: CraneModel,
+    nominal: Option<CraneModel>,
     joints: Vec<Joint>,
     moving: Vec<usize>,
     held: Vec<usize>,
@@ -107,13 +108,36 @@ impl Machine {
             })
             .collect::<Result<Vec<_>>>()?;
         let (rates, task, reward) = (config.rates, config.task.clone(), config.reward);
-        Ok(Self { model, joints, moving, held, booms, rest_posture, survey, rates, task, reward, regions })
+        let nominal = match crane.feedforward {
+            Feedforward::None => None,
+            Feedforward::Nominal => Some(load_unloaded_model(config)?),
+        };
+        Ok(Self {
+            model,
+            nominal,
+            joints,
+            moving,
+            held,
+            booms,
+            rest_posture,
+            survey,
+            rates,
+            task,
+            reward,
+            regions,
+        })
     }
 
     /// The rigid bodies and the plant.
     #[must_use]
     pub fn model(&self) -> &CraneModel {
         &self.model
+    }
+
+    /// What the controllers know of the crane, if anything.
+    #[must_use]
+    pub fn nominal_model(&self) -> Option<&CraneModel> {
+        self.nominal.as_ref()
     }
 
     /// Every joint, in the order of the model's actuators.
@@ -207,6 +231,10 @@ impl Machine {
 /// # Errors
 /// A file is missing or wrong; the message names it, the field and the cause.
 pub fn load_model(config: &ConfigSpec) -> Result<CraneModel> {
+    Ok(load_unloaded_model(config)?.with_payload(config.crane.payload)?)
+}
+
+fn load_unloaded_model(config: &ConfigSpec) -> Result<CraneModel> {
     let crane = &config.crane;
     let urdf = store::read_text(&crane.urdf)?;
     let loops = store::read_text(&crane.loops)?;
@@ -216,8 +244,7 @@ pub fn load_model(config: &ConfigSpec) -> Result<CraneModel> {
     let in_plants = || crane.plants.display().to_string();
     let plants = PlantFile::from_ron(&plants).with_context(in_plants)?;
     let plant = plants.plant(&crane.plant).with_context(in_plants)?;
-    let model = bare.with_plant(plant).with_context(in_plants)?;
-    Ok(model.with_payload(crane.payload)?)
+    bare.with_plant(plant).with_context(in_plants)
 }
 
 fn in_loops(crane: &crate::config::Crane, actuator: &Actuator) -> String {
@@ -258,8 +285,13 @@ fn reference_limits(limits: &Limits, margin: TrackingMargin) -> Result<Limits> {
 /// Limits and period leave no motion; the message says which.
 pub fn planner(actuator: &Actuator, config: &ConfigSpec) -> Result<Planner> {
     let ConfigSpec { crane, motion, rates, .. } = config;
+    let name = actuator.name();
+    let margin = *motion
+        .tracking_margin
+        .get(name)
+        .ok_or_else(|| anyhow!("motion.tracking_margin has no entry for {name}; every actuator needs one"))?;
     let limits = actuator_limits(actuator)
-        .and_then(|limits| reference_limits(&limits, motion.tracking_margin))
+        .and_then(|limits| reference_limits(&limits, margin))
         .with_context(|| in_loops(crane, actuator))?;
     let spec =
         PlannerSpec { limits, shape: motion.shape, timing: motion.timing, period: rates.policy_period() };
@@ -346,10 +378,7 @@ fn survey(
         boom_speed: vec![0.0; booms.len()],
         tip_speed: 0.0,
     };
-    let unloaded = load_model(&ConfigSpec {
-        crane: crate::config::Crane { payload: 0.0, ..config.crane.clone() },
-        ..config.clone()
-    })?;
+    let unloaded = load_unloaded_model(config)?;
     let still = vec![0.0; joints];
     let mut diagonal = vec![0.0; joints];
     let mut jacobian = vec![0.0; 6 * joints];

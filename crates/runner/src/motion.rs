@@ -4,11 +4,14 @@ use std::sync::Arc;
 
 use adaptive_ctrl::{AdaptiveController, JointController, Measurement, Reference, Saturation};
 use anyhow::{Context, Result};
-use hiab_dynamics::Data;
+use hiab_dynamics::{CraneModel, Data};
 use jbtg::{Extrema, Interval, State, Trajectory};
 use safezone::{Request, Source};
 
+use crate::config::Integrator;
 use crate::evidence::Evidence;
+use crate::feedforward::Feedforward;
+use crate::interpolation::Interpolation;
 use crate::machine::Machine;
 
 /// The crane in motion: the simulated plant, its controllers, its reference.
@@ -23,12 +26,15 @@ pub struct Motion {
     velocity: Vec<f64>,
     acceleration: Vec<f64>,
     effort: Vec<f64>,
+    feedforward: Feedforward,
     /// Scratch: velocities before the present tick.
     velocity_before: Vec<f64>,
     /// Scratch: another posture than the present one.
     undisturbed: Vec<f64>,
-    /// State of every joint's reference at the current tick.
+    /// State of every joint's reference at the beginning of the policy period.
     reference: Vec<State>,
+    /// Every joint's reference from its last sample to the next.
+    between: Vec<Interpolation>,
     /// This period's reference of every moving joint, in the order of the actions.
     trajectories: Vec<Trajectory>,
     evidence: Evidence,
@@ -43,7 +49,6 @@ impl Motion {
     #[must_use]
     pub fn new(machine: Arc<Machine>, watch_held_joints: bool) -> Self {
         let joints = machine.joints().len();
-        let rest = State { position: 0.0, velocity: 0.0, acceleration: 0.0, jerk: 0.0 };
         Self {
             data: machine.model().new_data(),
             controllers: machine.joints().iter().map(|joint| joint.controller.clone()).collect(),
@@ -51,9 +56,11 @@ impl Motion {
             velocity: vec![0.0; joints],
             acceleration: vec![0.0; joints],
             effort: vec![0.0; joints],
+            feedforward: Feedforward::new(machine.nominal_model(), joints),
             velocity_before: vec![0.0; joints],
             undisturbed: vec![0.0; joints],
-            reference: vec![rest; joints],
+            reference: vec![at_rest(0.0); joints],
+            between: vec![Interpolation::at_rest(0.0); joints],
             trajectories: Vec::with_capacity(machine.moving().len()),
             evidence: Evidence::none(joints),
             watch_held_joints,
@@ -63,7 +70,7 @@ impl Motion {
 
     /// Puts the crane to rest with its references at `position`, held by its controllers.
     ///
-    /// The law has no feedforward, so a joint that carries load rests a little beside its reference; the crane is put
+    /// A joint rests a little beside its reference under the load that the feedforward does not know; the crane is put
     /// there, and its first command is what holds it. [`AdaptiveController`]'s `start_holding` says how far.
     ///
     /// # Errors
@@ -73,27 +80,35 @@ impl Motion {
         self.velocity.fill(0.0);
         self.acceleration.fill(0.0);
         self.position.copy_from_slice(position);
-        // The offset depends on the load where the crane rests, and that on the offset; it is some micrometres, so the
-        // second round changes nothing that matters.
-        for round in 0..2 {
+        for (joint, &position) in position.iter().enumerate() {
+            self.reference[joint] = at_rest(position);
+            self.between[joint] = Interpolation::at_rest(position);
+        }
+        self.feedforward.update(machine.nominal_model(), &self.between, 0.0, 0.0)?;
+        // The load depends on where the crane rests, and that on the load; it is some micrometres, so the second round
+        // changes nothing that matters.
+        for _ in 0..2 {
             machine.model().update_dynamics(&mut self.data, &self.position, &self.velocity)?;
             self.effort.copy_from_slice(self.data.gravity_effort());
             for (joint, setup) in machine.joints().iter().enumerate() {
-                if round > 0 {
-                    self.position[joint] += position[joint] - self.reference[joint].position;
-                }
                 let measured = Measurement { position: self.position[joint], velocity: 0.0 };
+                let unknown = self.effort[joint] - self.feedforward.effort()[joint];
                 let controller = &mut self.controllers[joint];
                 controller.reset();
                 let reference = controller
-                    .start_holding(measured, self.effort[joint])
+                    .start_holding(measured, unknown)
                     .with_context(|| format!("{} cannot be held at {}", setup.name, measured.position))?;
-                self.reference[joint] =
-                    State { position: reference.position, velocity: 0.0, acceleration: 0.0, jerk: 0.0 };
+                self.position[joint] += position[joint] - reference.position;
             }
         }
         for (joint, setup) in machine.joints().iter().enumerate() {
-            let extrema = at_rest(self.reference[joint].position);
+            let point = |value| Interval { min: value, max: value };
+            let extrema = Extrema {
+                position: point(position[joint]),
+                velocity: point(0.0),
+                acceleration: point(0.0),
+                jerk: point(0.0),
+            };
             self.evidence.add_reference(joint, &extrema, &setup.limits, &setup.limits);
         }
         Ok(())
@@ -116,13 +131,13 @@ impl Motion {
         for tick in 0..rates.policy_divider {
             if tick % rates.reference_divider == 0 {
                 sampled_at = tick;
-                self.sample(&machine, f64::from(tick) * tick_period);
+                self.sample(&machine, tick);
                 if self.watch_held_joints {
                     self.measure_held_joints(&machine)?;
                 }
             }
             if tick % rates.controller_divider == 0 {
-                self.control(f64::from(tick - sampled_at) * tick_period);
+                self.control(&machine, f64::from(tick - sampled_at) * tick_period)?;
             }
             self.integrate(&machine, tick_period)?;
             self.witness(&machine, f64::from(tick + 1 - sampled_at) * tick_period, tick_period);
@@ -157,21 +172,29 @@ impl Motion {
         Ok(())
     }
 
-    /// Samples the reference of the moving joints at `time` in this period.
-    fn sample(&mut self, machine: &Machine, time: f64) {
+    /// Samples the reference of the moving joints at `tick` of this period, and one sample ahead.
+    fn sample(&mut self, machine: &Machine, tick: u32) {
+        let rates = machine.rates();
+        let time = |tick: u32| f64::from(tick) * rates.tick_period();
+        let next = (tick + rates.reference_divider).min(rates.policy_divider);
         for (&joint, trajectory) in machine.moving().iter().zip(&self.trajectories) {
-            self.reference[joint] = trajectory.state_at(time);
+            let end =
+                if next == rates.policy_divider { trajectory.end() } else { trajectory.state_at(time(next)) };
+            self.between[joint] = Interpolation::new(trajectory.state_at(time(tick)), end, time(next - tick));
         }
     }
 
     /// One command of every controller, `ahead` of the reference's last sample.
-    fn control(&mut self, ahead: f64) {
+    fn control(&mut self, machine: &Machine, ahead: f64) -> Result<()> {
+        let period = machine.rates().controller_period();
+        self.feedforward.update(machine.nominal_model(), &self.between, ahead, period)?;
         for (joint, controller) in self.controllers.iter_mut().enumerate() {
-            let wanted = extrapolate(&self.reference[joint], ahead);
+            let wanted = self.between[joint].state_at(ahead);
             let reference = Reference {
                 position: wanted.position,
                 velocity: wanted.velocity,
                 acceleration: wanted.acceleration,
+                effort: self.feedforward.effort()[joint],
             };
             let measured = Measurement { position: self.position[joint], velocity: self.velocity[joint] };
             let command = controller.step(reference, measured);
@@ -179,20 +202,17 @@ impl Motion {
             self.evidence.commands += 1;
             self.evidence.saturated_commands += u64::from(command.saturation != Saturation::None);
         }
+        Ok(())
     }
 
     fn integrate(&mut self, machine: &Machine, period: f64) -> Result<()> {
         self.velocity_before.copy_from_slice(&self.velocity);
-        machine
-            .model()
-            .semi_implicit_euler(
-                &mut self.data,
-                &mut self.position,
-                &mut self.velocity,
-                &self.effort,
-                None,
-                period,
-            )
+        let step = match machine.rates().integrator {
+            Integrator::SemiImplicitEuler => CraneModel::semi_implicit_euler,
+            Integrator::Rk4 => CraneModel::rk4,
+        };
+        let (position, velocity) = (&mut self.position, &mut self.velocity);
+        step(machine.model(), &mut self.data, position, velocity, &self.effort, None, period)
             .context("the simulated crane cannot go on")
     }
 
@@ -210,7 +230,7 @@ impl Motion {
                 jerk: (acceleration - self.acceleration[joint]) / period,
             };
             self.acceleration[joint] = acceleration;
-            let reference = extrapolate(&self.reference[joint], ahead);
+            let reference = self.between[joint].state_at(ahead);
             self.evidence.add_actual(joint, &actual, &reference, &setup.limits);
         }
     }
@@ -283,7 +303,7 @@ impl Motion {
         &self.effort
     }
 
-    /// State of every joint's reference.
+    /// State of every joint's reference at the end of the last policy period.
     #[must_use]
     pub fn reference(&self) -> &[State] {
         &self.reference
@@ -295,25 +315,6 @@ impl Motion {
     }
 }
 
-/// The reference between two samples: exact for constant jerk.
-///
-/// A controller that is faster than the reference would otherwise see a staircase, and answer each stair with jerk.
-fn extrapolate(sample: &State, ahead: f64) -> State {
-    let State { position, velocity, acceleration, jerk } = *sample;
-    State {
-        position: position + ahead * (velocity + ahead * (acceleration / 2.0 + ahead * jerk / 6.0)),
-        velocity: velocity + ahead * (acceleration + ahead * jerk / 2.0),
-        acceleration: acceleration + ahead * jerk,
-        jerk,
-    }
-}
-
-fn at_rest(position: f64) -> Extrema {
-    let still = Interval { min: 0.0, max: 0.0 };
-    Extrema {
-        position: Interval { min: position, max: position },
-        velocity: still,
-        acceleration: still,
-        jerk: still,
-    }
+fn at_rest(position: f64) -> State {
+    State { position, velocity: 0.0, acceleration: 0.0, jerk: 0.0 }
 }

@@ -21,6 +21,7 @@ impl AdaptiveController {
             position: measurement.position - z1,
             velocity: measurement.velocity,
             acceleration: 0.0,
+            effort: 0.0,
         })
     }
 

@@ -24,7 +24,7 @@ fn refusal(gains: GainsSpec, joint: JointSpec) -> StabilityError {
 #[test]
 fn two_ticks_equal_the_hand_computation() {
     let mut controller = controller();
-    let reference = Reference { position: 0.5, velocity: 0.1, acceleration: 7.0 };
+    let reference = Reference { position: 0.5, velocity: 0.1, acceleration: 7.0, effort: 0.0 };
     let measured = Measurement { position: 0.6, velocity: 0.4 };
     // z₁ = 0.1, u_v = −½·4·0.1 = −0.2, z₂ = 0.3 + 0.2 = 0.5, u = −0.1 − ½·20·0.5 = −5.1.
     let first = controller.step(reference, measured);
@@ -89,6 +89,7 @@ fn non_finite_or_overflowing_input_repeats_the_last_effort_and_moves_nothing() {
         [
             (Reference { position: x, ..Reference::default() }, Measurement::default()),
             (Reference { velocity: x, ..Reference::default() }, Measurement::default()),
+            (Reference { effort: x, ..Reference::default() }, Measurement::default()),
             (Reference::default(), Measurement { position: x, velocity: 0.0 }),
             (Reference::default(), Measurement { position: 0.0, velocity: x }),
         ]
@@ -112,6 +113,15 @@ fn reference_acceleration_is_not_used() {
     let measured = Measurement { position: 0.02, velocity: 0.01 };
     let with = |acceleration| controller().step(Reference { acceleration, ..Reference::default() }, measured);
     assert_eq!(with(0.0), with(f64::NAN));
+}
+
+#[test]
+fn feedforward_adds_to_the_law_and_both_are_cut_together() {
+    let measured = Measurement { position: 1e-3, velocity: 0.0 };
+    let with = |effort| controller().step(Reference { effort, ..Reference::default() }, measured);
+    let law = with(0.0).effort;
+    assert!(law < 0.0 && (with(2.5).effort - (law + 2.5)).abs() < 1e-12);
+    assert_eq!((with(1e3).effort, with(1e3).saturation), (10.0, Saturation::AtUpper));
 }
 
 #[test]
