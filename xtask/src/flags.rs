@@ -1,0 +1,276 @@
+//! The whole grammar of the command line.
+//!
+//! [`COMMANDS`] is what may be written, and what `help` prints; the types below are what the commands
+//! get, checked.
+
+use crate::args::{Parsed, UsageError};
+use std::path::PathBuf;
+
+/// One command: `cargo xtask NAME [flags]`.
+#[derive(Debug)]
+pub(crate) struct Command {
+    pub(crate) name: &'static str,
+    pub(crate) summary: &'static str,
+    pub(crate) flags: &'static [Flag],
+    pub(crate) example: &'static str,
+}
+
+/// One flag: `--NAME` or `--NAME VALUE` or `--NAME=VALUE`.
+#[derive(Debug)]
+pub(crate) struct Flag {
+    pub(crate) name: &'static str,
+    /// What the value is called in the help; none for a switch.
+    pub(crate) value: Option<&'static str>,
+    pub(crate) required: bool,
+    pub(crate) help: &'static str,
+}
+
+const fn required(name: &'static str, value: &'static str, help: &'static str) -> Flag {
+    Flag { name, value: Some(value), required: true, help }
+}
+
+const fn optional(name: &'static str, value: &'static str, help: &'static str) -> Flag {
+    Flag { name, value: Some(value), required: false, help }
+}
+
+const fn switch(name: &'static str, help: &'static str) -> Flag {
+    Flag { name, value: None, required: false, help }
+}
+
+/// Every command, in the order in which a newcomer needs them.
+pub(crate) const COMMANDS: &[Command] = &[
+    Command {
+        name: "tables",
+        summary: "Build the braking tables of the crane's joints",
+        flags: &[switch("check", "change nothing; fail if a table is missing or out of date")],
+        example: "cargo xtask tables --check",
+    },
+    Command {
+        name: "train",
+        summary: "Train one stage of the curriculum, or all of them",
+        flags: &[
+            optional("stage", "STAGE", "purple, yellow or orange; this or --all"),
+            switch("all", "purple, yellow and orange one after another"),
+            optional("run", "NAME", "folder of the run under runs/"),
+            optional("seed", "N", "seed of everything random, instead of the configuration's"),
+            optional("episodes", "N", "stop after so many episodes, instead of the configuration's"),
+            optional("config", "FILE", "configuration, instead of the stage's own in assets/config/"),
+            switch("resume", "continue from the run's latest checkpoint"),
+            switch("quiet", "no progress on standard error"),
+            switch("plain", "progress as lines, on a terminal too"),
+        ],
+        example: "cargo xtask train --stage purple --run first --seed 7",
+    },
+    Command {
+        name: "eval",
+        summary: "Evaluate a trained policy, without exploration",
+        flags: &[
+            required("run", "NAME", "folder of the run under runs/"),
+            required("stage", "STAGE", "purple, yellow or orange"),
+            optional("episodes", "N", "number of episodes"),
+            optional("seed", "N", "seed of the starts and targets"),
+            optional("json", "FILE", "write the result there as JSON as well"),
+        ],
+        example: "cargo xtask eval --run first --stage purple --episodes 200",
+    },
+    Command {
+        name: "profile",
+        summary: "Plan one jerk-bounded velocity change and print it as samples",
+        flags: &[
+            required("v1", "V", "velocity at the beginning [m/s or rad/s]"),
+            required("v2", "V", "velocity at the end [m/s or rad/s]"),
+            required("dt", "T", "duration [s]"),
+            required("vmax", "V", "velocity limit, both ways [m/s or rad/s]"),
+            required("amax", "A", "acceleration limit, both ways [m/s² or rad/s²]"),
+            required("jmax", "J", "jerk limit, both ways [m/s³ or rad/s³]"),
+            optional("shape", "SHAPE", "smoothstep (default) or sine-quintic"),
+            optional("timing", "TIMING", "stretched (default) or fastest"),
+            optional("hz", "N", "samples per second (default 10000)"),
+        ],
+        example: "cargo xtask profile --v1 -0.1 --v2 -0.08 --dt 0.05 --vmax 0.15 --amax 1 --jmax 100",
+    },
+    Command {
+        name: "zone",
+        summary: "Print the safe velocity range of one joint",
+        flags: &[
+            required("joint", "NAME", "joint, as in the crane's URDF (`_joint` may be left out)"),
+            required("position", "P", "position now [m or rad]"),
+            required("velocity", "V", "velocity now [m/s or rad/s]"),
+            switch("json", "print JSON"),
+        ],
+        example: "cargo xtask zone --joint lift_joint --position 0.49 --velocity 0.05",
+    },
+    Command {
+        name: "dynamics",
+        summary: "Compute the dynamics of given states and print them as JSON",
+        flags: &[required("states", "FILE", "states, in the form of the golden states.json")],
+        example: "cargo xtask dynamics --states crates/hiab-dynamics/testdata/golden/states.json",
+    },
+    Command {
+        name: "tidy",
+        summary: "Check the layering and what else clippy cannot see",
+        flags: &[],
+        example: "cargo xtask tidy",
+    },
+    Command {
+        name: "help",
+        summary: "Print this, or what one command takes: `help COMMAND`",
+        flags: &[],
+        example: "cargo xtask help train",
+    },
+];
+
+/// What a curriculum stage may be called.
+pub(crate) const STAGES: &[&str] = &["purple", "yellow", "orange"];
+
+/// The crane's actuated joints. A test compares them with the crane's own file.
+pub(crate) const JOINTS: &[&str] = &[
+    "slew_joint",
+    "lift_joint",
+    "tilt_joint",
+    "telescope_joint",
+    "wrist_pitch_joint",
+    "wrist_yaw_joint",
+    "wrist_roll_joint",
+];
+
+/// Acceleration ramps that `profile` knows.
+pub(crate) const SHAPES: &[&str] = &["smoothstep", "sine-quintic"];
+
+/// Timings that `profile` knows.
+pub(crate) const TIMINGS: &[&str] = &["stretched", "fastest"];
+
+/// A command line that has been understood. Paths are absolute.
+#[derive(Debug)]
+pub(crate) enum Invocation {
+    Help(Option<&'static Command>),
+    Tables(Tables),
+    Train(Train),
+    Eval(Eval),
+    Profile(Profile),
+    Zone(Zone),
+    Dynamics(Dynamics),
+    Tidy,
+}
+
+#[derive(Debug, PartialEq)]
+pub(crate) struct Tables {
+    pub(crate) check: bool,
+}
+
+#[derive(Debug, PartialEq)]
+pub(crate) struct Train {
+    pub(crate) stages: Stages,
+    pub(crate) run: Option<String>,
+    pub(crate) seed: Option<u64>,
+    pub(crate) episodes: Option<u64>,
+    pub(crate) config: Option<PathBuf>,
+    pub(crate) resume: bool,
+    pub(crate) quiet: bool,
+    pub(crate) plain: bool,
+}
+
+/// What to train.
+#[derive(Debug, PartialEq)]
+pub(crate) enum Stages {
+    All,
+    One(&'static str),
+}
+
+#[derive(Debug, PartialEq)]
+pub(crate) struct Eval {
+    pub(crate) run: String,
+    pub(crate) stage: &'static str,
+    pub(crate) episodes: Option<u64>,
+    pub(crate) seed: Option<u64>,
+    pub(crate) json: Option<PathBuf>,
+}
+
+#[derive(Debug, PartialEq)]
+pub(crate) struct Profile {
+    pub(crate) v1: f64,
+    pub(crate) v2: f64,
+    pub(crate) dt: f64,
+    pub(crate) vmax: f64,
+    pub(crate) amax: f64,
+    pub(crate) jmax: f64,
+    pub(crate) shape: Option<&'static str>,
+    pub(crate) timing: Option<&'static str>,
+    pub(crate) hz: Option<u64>,
+}
+
+#[derive(Debug, PartialEq)]
+pub(crate) struct Zone {
+    pub(crate) joint: &'static str,
+    pub(crate) position: f64,
+    pub(crate) velocity: f64,
+    pub(crate) json: bool,
+}
+
+#[derive(Debug, PartialEq)]
+pub(crate) struct Dynamics {
+    pub(crate) states: PathBuf,
+}
+
+impl Invocation {
+    /// From the words after `cargo xtask`.
+    pub(crate) fn parse(words: Vec<String>) -> Result<Self, UsageError> {
+        let parsed = match Parsed::read(words)? {
+            Parsed::Help(command) => return Ok(Self::Help(command)),
+            Parsed::Command(values) => values,
+        };
+        Ok(match parsed.command.name {
+            "tables" => Self::Tables(Tables { check: parsed.switch("check") }),
+            "train" => Self::Train(Train {
+                stages: match (parsed.one_of("stage", STAGES)?, parsed.switch("all")) {
+                    (Some(stage), false) => Stages::One(stage),
+                    (None, true) => Stages::All,
+                    (Some(_), true) => return Err(parsed.error("give either --stage or --all, not both")),
+                    (None, false) => {
+                        let wanted = format!("needs --stage STAGE ({}) or --all", STAGES.join(", "));
+                        return Err(parsed.error(&wanted));
+                    }
+                },
+                run: parsed.run_name("run")?,
+                seed: parsed.integer("seed", 0)?,
+                episodes: parsed.integer("episodes", 1)?,
+                config: parsed.existing_file("config")?,
+                resume: parsed.switch("resume"),
+                quiet: parsed.switch("quiet"),
+                plain: parsed.switch("plain"),
+            }),
+            "eval" => Self::Eval(Eval {
+                run: parsed.given("run", parsed.run_name("run")?)?,
+                stage: parsed.given("stage", parsed.one_of("stage", STAGES)?)?,
+                episodes: parsed.integer("episodes", 1)?,
+                seed: parsed.integer("seed", 0)?,
+                json: parsed.file("json")?,
+            }),
+            "profile" => Self::Profile(Profile {
+                v1: parsed.number("v1")?,
+                v2: parsed.number("v2")?,
+                dt: parsed.number("dt")?,
+                vmax: parsed.number("vmax")?,
+                amax: parsed.number("amax")?,
+                jmax: parsed.number("jmax")?,
+                shape: parsed.one_of("shape", SHAPES)?,
+                timing: parsed.one_of("timing", TIMINGS)?,
+                hz: parsed.integer("hz", 1)?,
+            }),
+            "zone" => Self::Zone(Zone {
+                joint: parsed.joint("joint")?,
+                position: parsed.number("position")?,
+                velocity: parsed.number("velocity")?,
+                json: parsed.switch("json"),
+            }),
+            "dynamics" => {
+                Self::Dynamics(Dynamics { states: parsed.given("states", parsed.existing_file("states")?)? })
+            }
+            "tidy" => Self::Tidy,
+            _ => Self::Help(None),
+        })
+    }
+}
+
+#[cfg(test)]
+mod tests;

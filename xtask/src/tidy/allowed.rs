@@ -1,0 +1,126 @@
+//! What every crate may depend on directly: the layers of `docs/ARCHITECTURE.md`, as a table.
+//!
+//! A line here says that a crate may; the line above the dependency in its manifest says why it does.
+
+/// What one crate may name in its manifest.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Allowed {
+    pub(super) name: &'static str,
+    /// Normal dependencies.
+    pub(super) normal: &'static [&'static str],
+    /// Normal dependencies that a feature must switch on.
+    pub(super) optional: &'static [&'static str],
+    /// Dependencies of the build script.
+    pub(super) build: &'static [&'static str],
+    /// Dependencies of tests, examples and benches.
+    pub(super) dev: &'static [&'static str],
+}
+
+/// A crate that may depend on nothing.
+const NOTHING: Allowed = Allowed { name: "", normal: &[], optional: &[], build: &[], dev: &[] };
+
+/// The allow-list, from the bottom layer up. A crate that is not in it fails, and so does a line that no crate
+/// uses.
+pub(super) const ALLOWED: &[Allowed] = &[
+    Allowed { name: "jbtg", optional: &["libm", "serde"], dev: &["nalgebra", "proptest", "ron"], ..NOTHING },
+    Allowed {
+        name: "safezone",
+        normal: &["jbtg", "thiserror"],
+        optional: &["libm", "ron", "serde"],
+        dev: &["proptest"],
+        ..NOTHING
+    },
+    Allowed {
+        name: "adaptive-ctrl",
+        normal: &["libm", "thiserror"],
+        optional: &["serde"],
+        dev: &["proptest", "ron"],
+        ..NOTHING
+    },
+    Allowed {
+        name: "hiab-dynamics",
+        normal: &["nalgebra", "ron", "serde", "thiserror", "urdf-rs"],
+        dev: &["allocation-counter", "criterion", "proptest", "serde_json"],
+        ..NOTHING
+    },
+    Allowed {
+        name: "sac-burn",
+        normal: &[
+            "burn",
+            "crc32fast",
+            "pulp",
+            "rand_core",
+            "rand_xoshiro",
+            "serde",
+            "serde_json",
+            "thiserror",
+            "tracing",
+        ],
+        dev: &["burn", "criterion", "mimalloc", "ron"],
+        ..NOTHING
+    },
+    Allowed {
+        name: "runner",
+        normal: &[
+            "adaptive-ctrl",
+            "hiab-dynamics",
+            "jbtg",
+            "safezone",
+            "anyhow",
+            "rand_xoshiro",
+            "ron",
+            "serde",
+            "serde_json",
+            "thiserror",
+            "tracing",
+            "tracing-subscriber",
+        ],
+        optional: &["sac-burn", "crc32c", "indicatif", "mimalloc"],
+        dev: &["tempfile"],
+        ..NOTHING
+    },
+    Allowed { name: "xtask", normal: &["anyhow", "serde_json"], ..NOTHING },
+];
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    impl Allowed {
+        fn everything(&self) -> impl Iterator<Item = &'static str> {
+            [self.normal, self.optional, self.build, self.dev].into_iter().flatten().copied()
+        }
+
+        fn of_this_workspace(&self) -> Vec<&'static str> {
+            self.everything().filter(|name| ALLOWED.iter().any(|other| other.name == *name)).collect()
+        }
+    }
+
+    #[test]
+    fn the_layers_are_those_of_the_design() {
+        for (name, below) in [
+            ("jbtg", vec![]),
+            ("safezone", vec!["jbtg"]),
+            ("adaptive-ctrl", vec![]),
+            ("hiab-dynamics", vec![]),
+            ("sac-burn", vec![]),
+            ("runner", vec!["adaptive-ctrl", "hiab-dynamics", "jbtg", "safezone", "sac-burn"]),
+            ("xtask", vec![]),
+        ] {
+            let allowed = ALLOWED.iter().find(|allowed| allowed.name == name).unwrap();
+            assert_eq!(allowed.of_this_workspace(), below, "{name}");
+        }
+    }
+
+    #[test]
+    fn burn_ends_in_one_crate() {
+        for allowed in ALLOWED.iter().filter(|allowed| allowed.name != "sac-burn") {
+            assert!(!allowed.everything().any(|name| name.starts_with("burn")), "{}", allowed.name);
+        }
+    }
+
+    #[test]
+    fn the_trajectory_crate_requires_nothing() {
+        assert!(ALLOWED[0].name == "jbtg" && ALLOWED[0].normal.is_empty() && ALLOWED[0].build.is_empty());
+    }
+}
