@@ -1,6 +1,5 @@
 //! Cost of one evaluation and of one step of the crane. Target: at most 4 µs per step of semi-implicit Euler, since
 //! a policy step takes 100 of them.
-#![expect(missing_docs, reason = "criterion's macros generate undocumented items")]
 
 use std::hint::black_box;
 

@@ -1,5 +1,10 @@
 //! What the integration tests share.
-#![allow(dead_code, unreachable_pub, reason = "each test binary uses its own part")]
+#![allow(
+    dead_code,
+    unreachable_pub,
+    clippy::unwrap_used,
+    reason = "each test binary uses its own part; helpers of tests are tests too"
+)]
 
 pub mod tolerance;
 
@@ -30,4 +35,9 @@ pub fn velocity_at(model: &CraneModel, share: &[f64]) -> Vec<f64> {
 /// Largest absolute value.
 pub fn max_abs(values: &[f64]) -> f64 {
     values.iter().fold(0.0, |max, value| max.max(value.abs()))
+}
+
+/// Distance of two points.
+pub fn distance(a: [f64; 3], b: [f64; 3]) -> f64 {
+    a.iter().zip(b).map(|(a, b)| (a - b) * (a - b)).sum::<f64>().sqrt()
 }

@@ -20,6 +20,9 @@ pub const ROUND_TRIP: f64 = 1e-8;
 /// Identities that differ in the order of sums alone, relative.
 pub const ROUNDING: f64 = 1e-11;
 
-/// Central differences with step 1e-6, relative to the largest value: truncation 1e-12 times third derivatives of
-/// up to 1e3, rounding 1e-16 / 1e-6.
+/// Step of central differences, in units of the coordinate.
+pub const DIFFERENCE_STEP: f64 = 1e-5;
+
+/// Central differences, relative to the largest value: truncation 1e-10 times third derivatives of up to 1e3,
+/// rounding 1e-15 / 1e-5.
 pub const DIFFERENCE: f64 = 1e-7;
