@@ -6,7 +6,7 @@
 //! - `serde`: [`Limits`], [`PlannerSpec`], [`State`] and what they hold as serde data.
 //!
 //! The crate never allocates, logs or reads a clock. Units are SI throughout: "rad or m" stands for rad at a
-//! revolute joint and m at a prismatic one. [P] is the paper named in `docs/references.md`.
+//! revolute joint and m at a prismatic one. \[P\] is the paper named in `docs/references.md`.
 #![cfg_attr(not(feature = "std"), no_std)]
 #![forbid(unsafe_code)]
 

@@ -21,7 +21,7 @@ pub struct PlannerSpec {
     pub shape: Shape,
     /// How a step spends the period.
     pub timing: Timing,
-    /// Duration of one step [s]: the policy's period.
+    /// Duration of one step \[s\]: the policy's period.
     pub period: f64,
 }
 
@@ -34,7 +34,7 @@ pub struct Authority {
     /// (0, 1).
     pub share: f64,
     /// Largest distance per velocity change by which a step first moves against its own direction, or has
-    /// overshot before its end [s]. 0 for [`Shape::Smoothstep`].
+    /// overshot before its end \[s\]. 0 for [`Shape::Smoothstep`].
     pub reverse_travel: f64,
 }
 
@@ -126,7 +126,7 @@ impl Planner {
         &self.spec.limits
     }
 
-    /// Duration of every step [s].
+    /// Duration of every step \[s\].
     #[must_use]
     pub const fn period(&self) -> f64 {
         self.spec.period

@@ -26,19 +26,19 @@ const GUARD: f64 = 1e-14;
 pub(crate) struct PulseLimits {
     /// Peak acceleration of the largest pulse, > 0.
     pub(crate) acceleration: f64,
-    /// Duration of the rising ramp at that acceleration [s].
+    /// Duration of the rising ramp at that acceleration \[s\].
     pub(crate) ramp_up: f64,
-    /// Duration of the falling ramp at that acceleration [s].
+    /// Duration of the falling ramp at that acceleration \[s\].
     pub(crate) ramp_down: f64,
     /// Velocity change of the largest pulse, > 0: the authority Δ of one period.
     pub(crate) velocity_change: f64,
     /// Share of what the acceleration limit alone would allow in one period.
     pub(crate) share: f64,
-    /// The period [s].
+    /// The period \[s\].
     period: f64,
     /// Peak acceleration per velocity change of a stretched pulse [1/s].
     stretched_gain: f64,
-    /// Displacement per velocity change of a stretched pulse, over the whole period [s].
+    /// Displacement per velocity change of a stretched pulse, over the whole period \[s\].
     stretched_travel: f64,
     /// Velocity change of two full ramps without a cruise, dV_min of [P, Eq. (dvmin)].
     ramps_only: f64,
@@ -166,7 +166,7 @@ impl PulseLimits {
     }
 
     /// Largest distance per velocity change that a pulse first moves against its direction (or, seen from its end,
-    /// has overshot by) [s].
+    /// has overshot by) \[s\].
     pub(crate) fn reverse_travel(&self, shape: Shape) -> f64 {
         let ramp = self.ramp_up.max(self.ramp_down);
         let travel = shape.constants().reverse_travel * ramp * ramp;

@@ -66,13 +66,13 @@ impl Segment {
         Self { start, duration, coefficients }
     }
 
-    /// Time at which the segment starts, since the start of its trajectory [s].
+    /// Time at which the segment starts, since the start of its trajectory \[s\].
     #[must_use]
     pub const fn start(&self) -> f64 {
         self.start
     }
 
-    /// Duration [s], > 0.
+    /// Duration \[s\], > 0.
     #[must_use]
     pub const fn duration(&self) -> f64 {
         self.duration
@@ -84,7 +84,7 @@ impl Segment {
         self.coefficients
     }
 
-    /// State `time` after the segment's own start [s]; the polynomial as it is, also outside the segment.
+    /// State `time` after the segment's own start \[s\]; the polynomial as it is, also outside the segment.
     #[must_use]
     #[inline]
     pub fn state_at(&self, time: f64) -> State {

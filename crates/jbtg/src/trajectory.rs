@@ -11,7 +11,7 @@ pub const MAX_SEGMENTS: usize = 7;
 /// One control point between quintics, [P, Alg. 1], step 5.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ControlPoint {
-    /// Time since the start of the trajectory [s].
+    /// Time since the start of the trajectory \[s\].
     pub time: f64,
     /// State there. Where the jerk jumps this is the side after the jump; at the end there is none, and it is 0.
     pub state: State,
@@ -73,7 +73,7 @@ impl Trajectory {
         self.count += 1;
     }
 
-    /// State at `time` since the start [s].
+    /// State at `time` since the start \[s\].
     ///
     /// Total: before the start it is the first state, from the end on the end state. A NaN time gives the end
     /// state.
@@ -93,7 +93,7 @@ impl Trajectory {
         }
     }
 
-    /// Duration [s]: the planner's period, exactly.
+    /// Duration \[s\]: the planner's period, exactly.
     #[must_use]
     pub const fn duration(&self) -> f64 {
         self.duration

@@ -18,7 +18,8 @@ impl Approach<'_> {
             return lowest;
         }
         let kept = braking.limit - 0.5 * braking.guard;
-        let farthest = self.position + self.velocity.max(0.0) * braking.period + braking.reverse * braking.step;
+        let farthest =
+            self.position + self.velocity.max(0.0) * braking.period + braking.reverse * braking.step;
         if farthest <= kept {
             return lowest;
         }

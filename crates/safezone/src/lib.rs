@@ -6,7 +6,7 @@
 //! - `build`: builds [`BrakingTable`]s and reads and writes their RON form.
 //!
 //! The crate never opens a file, logs or reads a clock. The argument behind the guarantee is in
-//! `docs/guarantee.md`; [P] is the paper named in `docs/references.md`.
+//! `docs/guarantee.md`; \[P\] is the paper named in `docs/references.md`.
 #![cfg_attr(not(feature = "std"), no_std)]
 #![forbid(unsafe_code)]
 

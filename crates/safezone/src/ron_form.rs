@@ -34,7 +34,8 @@ impl BrakingTable<'_> {
             lower: self.knots(Side::Lower).to_vec(),
         };
         let pretty = ron::ser::PrettyConfig::new().depth_limit(3).new_line("\n");
-        let body = ron::ser::to_string_pretty(&file, pretty).expect("a plain struct of numbers always serialises");
+        let body =
+            ron::ser::to_string_pretty(&file, pretty).expect("a plain struct of numbers always serialises");
         format!("{HEADER}{body}\n")
     }
 }

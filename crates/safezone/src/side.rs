@@ -23,11 +23,11 @@ pub(crate) struct Braking {
     pub(crate) limit: f64,
     /// Velocity that one period takes away, Δ [rad/s or m/s].
     pub(crate) step: f64,
-    /// The period [s].
+    /// The period \[s\].
     pub(crate) period: f64,
     /// Displacement of the step from Δ to 0 [rad or m].
     last_step: f64,
-    /// Excess of a step's interior over its ends, per velocity change [s]; 0 for the smoothstep.
+    /// Excess of a step's interior over its ends, per velocity change \[s\]; 0 for the smoothstep.
     pub(crate) reverse: f64,
     /// Largest velocity that a step may end at [rad/s or m/s].
     pub(crate) velocity: f64,

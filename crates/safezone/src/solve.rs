@@ -72,7 +72,11 @@ impl Approach<'_> {
     ) -> ((f64, f64), (f64, f64)) {
         let mut split = |velocity: f64| {
             let travel = self.travel(velocity);
-            if travel <= room { low = (velocity, travel) } else { high = (velocity, travel) }
+            if travel <= room {
+                low = (velocity, travel)
+            } else {
+                high = (velocity, travel)
+            }
             (low.0, high.0)
         };
         let (mut below, mut above) = (self.brake, self.reachable.max);

@@ -95,10 +95,11 @@ impl BrakingTable<'_> {
     /// Knots towards one limit, in increasing order.
     #[must_use]
     pub fn knots(&self, side: Side) -> &[Knot] {
-        match side {
+        let knots: &Knots<'_> = match side {
             Side::Upper => &self.upper,
             Side::Lower => &self.lower,
-        }
+        };
+        knots
     }
 
     /// Distance that stepwise braking needs from `speed` towards `side` [rad or m], in constant time.
@@ -118,7 +119,7 @@ impl BrakingTable<'_> {
     pub fn max_velocity(&self, side: Side, distance: f64) -> f64 {
         let knots = self.knots(side);
         let last = knots.len() - 1;
-        if !(distance > 0.0) {
+        if distance.is_nan() || distance <= 0.0 {
             return 0.0;
         }
         if distance >= knots[last].distance {
@@ -142,27 +143,32 @@ impl BrakingTable<'_> {
 #[cfg(feature = "build")]
 impl BrakingTable<'static> {
     /// A table that owns its knots and computes its hash.
-    pub(crate) fn owned(built_from: PlannerSpec, subdivisions: u32, upper: Vec<Knot>, lower: Vec<Knot>) -> Self {
+    pub(crate) fn owned(
+        built_from: PlannerSpec,
+        subdivisions: u32,
+        upper: Vec<Knot>,
+        lower: Vec<Knot>,
+    ) -> Self {
         let hash = table_hash(&built_from, subdivisions, &upper, &lower);
         Self { built_from, subdivisions, upper: Cow::Owned(upper), lower: Cow::Owned(lower), hash }
     }
 }
 
-/// Distance at `speed` by linear interpolation between equally spaced knots.
+/// Distance at `speed` by linear interpolation between equally spaced knots; infinite beyond the last one and for
+/// NaN.
 #[inline]
 pub(crate) fn interpolate(knots: &[Knot], speed: f64) -> f64 {
     if speed <= 0.0 {
         return 0.0;
     }
-    let k = (speed / knots[1].velocity) as usize;
-    match knots.get(k..k.saturating_add(2)) {
-        Some([low, high]) => {
-            let share = (speed - low.velocity) / (high.velocity - low.velocity);
-            low.distance + share * (high.distance - low.distance)
-        }
-        _ if speed == knots[knots.len() - 1].velocity => knots[knots.len() - 1].distance,
-        _ => f64::INFINITY,
+    let last = knots.len() - 1;
+    if speed.is_nan() || speed > knots[last].velocity {
+        return f64::INFINITY;
     }
+    let k = ((speed / knots[1].velocity) as usize).min(last - 1);
+    let (low, high) = (knots[k], knots[k + 1]);
+    let share = (speed - low.velocity) / (high.velocity - low.velocity);
+    low.distance + share * (high.distance - low.distance)
 }
 
 fn check_hash(parts: &TableParts<'_>) -> Result<(), TableError> {

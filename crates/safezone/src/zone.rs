@@ -125,7 +125,14 @@ impl<'a> SafeZone<'a> {
         SafeRange { min, max, brake: brake.clamp(min, max), narrowed, status }
     }
 
-    fn approach(&self, side: Side, position: f64, velocity: f64, reachable: Interval, brake: f64) -> Approach<'_> {
+    fn approach(
+        &self,
+        side: Side,
+        position: f64,
+        velocity: f64,
+        reachable: Interval,
+        brake: f64,
+    ) -> Approach<'_> {
         let braking = match side {
             Side::Upper => &self.upper,
             Side::Lower => &self.lower,
@@ -150,7 +157,8 @@ impl<'a> SafeZone<'a> {
 
     /// The range of a state that is not finite: braking as far as the velocity is known.
     fn blind_range(&self, velocity: f64) -> SafeRange {
-        let brake = if velocity.is_finite() { towards_zero(velocity, self.planner.reachable(velocity)) } else { 0.0 };
+        let brake =
+            if velocity.is_finite() { towards_zero(velocity, self.planner.reachable(velocity)) } else { 0.0 };
         SafeRange { min: brake, max: brake, brake, narrowed: true, status: RangeStatus::Unknown }
     }
 }
@@ -212,13 +220,17 @@ fn check_promises(planner: &Planner, table: &BrakingTable<'_>, side: Side) -> Re
 #[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
 pub enum ZoneError {
     /// The table was built for something else than this planner.
-    #[error("braking table {hash:016x} is stale: it was built for other limits, shape, timing or period; run `cargo xtask tables`")]
+    #[error(
+        "braking table {hash:016x} is stale: it was built for other limits, shape, timing or period; run `cargo xtask tables`"
+    )]
     Stale {
         /// The table's hash.
         hash: u64,
     },
     /// A knot promises that the joint stops sooner than it does.
-    #[error("braking table is unsafe ({side:?}): it claims {distance} from velocity {velocity}, braking takes {needed}")]
+    #[error(
+        "braking table is unsafe ({side:?}): it claims {distance} from velocity {velocity}, braking takes {needed}"
+    )]
     Unsafe {
         /// The limit concerned.
         side: Side,
@@ -230,7 +242,9 @@ pub enum ZoneError {
         needed: f64,
     },
     /// The knots do not lie on braking steps.
-    #[error("braking table's knots ({side:?}) are {found} apart in velocity, braking steps ask for {expected}")]
+    #[error(
+        "braking table's knots ({side:?}) are {found} apart in velocity, braking steps ask for {expected}"
+    )]
     Spacing {
         /// The limit concerned.
         side: Side,

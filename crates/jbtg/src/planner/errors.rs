@@ -10,12 +10,12 @@ use crate::planner::MIN_AUTHORITY_SHARE;
 pub enum PlannerError {
     /// The period is not finite and positive.
     Period {
-        /// The period [s].
+        /// The period \[s\].
         period: f64,
     },
     /// Nothing useful of the acceleration limit is left when every period starts and ends without acceleration.
     PeriodTooShort {
-        /// The period [s].
+        /// The period \[s\].
         period: f64,
         /// What it leaves, see [`Authority::share`](crate::Authority::share).
         share: f64,
