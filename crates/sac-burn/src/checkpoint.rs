@@ -9,7 +9,7 @@ use crate::config::Config;
 use crate::network::Optimizer;
 use crate::noise::Noise;
 use crate::policy::count;
-use crate::wire::{CheckpointError, Format, Frame, Unframe};
+use crate::wire::{CheckpointError, Format, Frame, Unframe, check_finite};
 
 const FORMAT: Format = Format { magic: *b"sac-agnt", name: "agent checkpoint", version: 1 };
 
@@ -38,8 +38,10 @@ impl Agent {
     /// all; a torn one is refused by [`Agent::load`].
     ///
     /// # Errors
+    /// [`CheckpointError::NotFinite`] if training has diverged, before anything is written;
     /// [`CheckpointError::Io`] if the writer fails.
     pub fn save(&self, out: &mut impl Write) -> Result<(), CheckpointError> {
+        self.check_finite()?;
         let header = Header {
             config: self.config.clone(),
             observation_dim: self.observation_dim,
@@ -82,8 +84,8 @@ impl Agent {
     /// reader.
     ///
     /// # Errors
-    /// [`CheckpointError`], with the cause, if the stream is no checkpoint, of another version, truncated, damaged
-    /// or contradicts itself, or if there is no memory for its replay.
+    /// [`CheckpointError`], with the cause, if the stream is no checkpoint, of another version, truncated, damaged,
+    /// not finite or contradicts itself, or if there is no memory for its replay.
     pub fn load(input: &mut impl Read) -> Result<Self, CheckpointError> {
         let (mut frame, header) = Unframe::begin::<Header>(input, FORMAT)?;
         check_replay(&header)?;
@@ -112,8 +114,37 @@ impl Agent {
         agent.steps = header.steps;
         agent.updates = header.updates;
         agent.noise = header.noise;
+        agent.check_finite()?;
         agent.refresh_policy();
         Ok(agent)
+    }
+
+    /// What is learnt; the replay memory takes finite numbers alone.
+    fn check_finite(&self) -> Result<(), CheckpointError> {
+        let temperature = &self.temperature;
+        for value in [temperature.log, temperature.moments[0], temperature.moments[1]] {
+            if !value.is_finite() {
+                return Err(CheckpointError::NotFinite { part: "entropy temperature", value });
+            }
+        }
+        for (part, network) in
+            [("actor", &self.actor), ("critics", &self.critics), ("target critics", &self.targets)]
+        {
+            let mut result = Ok(());
+            network.visit(|values| {
+                if result.is_ok() {
+                    result = check_finite(part, values);
+                }
+            });
+            result?;
+        }
+        for optimizer in [&self.actor_optimizer, &self.critic_optimizer] {
+            for moments in optimizer.moments.iter().flatten() {
+                check_finite("moments of Adam", &moments.first)?;
+                check_finite("moments of Adam", &moments.second)?;
+            }
+        }
+        Ok(())
     }
 }
 
@@ -154,3 +185,6 @@ fn number_bytes(header: &Header) -> u64 {
     let replay = row.saturating_mul(header.replay_len as u64);
     networks.saturating_add(replay).saturating_mul(4).saturating_add(24)
 }
+
+#[cfg(test)]
+mod tests;

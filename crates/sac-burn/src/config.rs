@@ -24,11 +24,11 @@ pub struct ConfigSpec {
     pub update_after: usize,
     /// Gradient updates per environment step, for the caller's loop.
     pub updates_per_step: u32,
-    /// Units of each hidden layer of the actor and of both critics; at least one layer.
+    /// Units of each hidden layer of the actor and of both critics, at most 8192; at least one layer, at most 16.
     pub hidden: Vec<usize>,
     /// Entropy temperature α at the start, > 0.
     pub initial_entropy_temperature: f64,
-    /// Entropy that the temperature is steered to [nat]; `None` is −(action dimensions).
+    /// Entropy that the temperature is steered to \[nat\]; `None` is −(action dimensions).
     pub target_entropy: Option<f64>,
     /// Least natural logarithm of the policy's standard deviation.
     pub log_std_min: f64,
@@ -42,10 +42,13 @@ pub struct ConfigSpec {
     pub adam_epsilon: f64,
 }
 
+const MOST_UNITS: usize = 8192;
+const MOST_LAYERS: usize = 16;
+
 /// Checked hyperparameters of one agent.
 ///
-/// Invariant: every value lies in the range that [`ConfigSpec`] states, and the replay memory can hold a batch as
-/// well as `update_after` transitions.
+/// Invariant: every value lies in the range that [`ConfigSpec`] states, also after rounding to single precision, and
+/// the replay memory can hold a batch as well as `update_after` transitions.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(try_from = "ConfigSpec", into = "ConfigSpec")]
 pub struct Config {
@@ -65,11 +68,33 @@ pub enum ConfigError {
         /// What was given.
         value: f64,
     },
+    /// A number is in its range, but not what the networks' arithmetic makes of it.
+    #[error("{field} must be {range} in single precision, where {value:e} becomes {rounded}")]
+    SinglePrecision {
+        /// Name of the field.
+        field: &'static str,
+        /// The range, in words.
+        range: &'static str,
+        /// What was given.
+        value: f64,
+        /// The nearest number of single precision.
+        rounded: f32,
+    },
     /// A count is zero.
     #[error("{field} must be at least 1, got 0")]
     Zero {
         /// Name of the field.
         field: &'static str,
+    },
+    /// A count is beyond what memory could hold.
+    #[error("{field} must be at most {most}, got {count}")]
+    TooMany {
+        /// Name of the field.
+        field: &'static str,
+        /// Largest count.
+        most: usize,
+        /// What was given.
+        count: usize,
     },
     /// The replay memory is too small for what it is needed for.
     #[error("replay_capacity must be at least {field} = {needed}, got {capacity}")]
@@ -127,7 +152,7 @@ impl Config {
         &self.spec
     }
 
-    /// Entropy that the temperature is steered to [nat], for a policy with `action_dim` outputs.
+    /// Entropy that the temperature is steered to \[nat\], for a policy with `action_dim` outputs.
     pub fn target_entropy(&self, action_dim: usize) -> f64 {
         self.spec.target_entropy.unwrap_or(-(action_dim as f64))
     }
@@ -151,6 +176,13 @@ impl TryFrom<ConfigSpec> for Config {
         ];
         if let Some((field, _)) = counts.into_iter().find(|(_, count)| *count == 0) {
             return Err(ConfigError::Zero { field });
+        }
+        let limits = [
+            ("hidden (number of layers)", MOST_LAYERS, spec.hidden.len()),
+            ("hidden (units of a layer)", MOST_UNITS, spec.hidden.iter().copied().max().unwrap_or(0)),
+        ];
+        if let Some((field, most, count)) = limits.into_iter().find(|(_, most, count)| count > most) {
+            return Err(ConfigError::TooMany { field, most, count });
         }
         check("discount", "in [0, 1)", spec.discount, |x| (0.0..1.0).contains(&x))?;
         check("learning_rate", "finite and > 0", spec.learning_rate, |x| x > 0.0)?;
@@ -187,11 +219,14 @@ fn check(
     value: f64,
     holds: impl Fn(f64) -> bool,
 ) -> Result<(), ConfigError> {
-    if value.is_finite() && holds(value) {
-        Ok(())
-    } else {
-        Err(ConfigError::OutOfRange { field, range, value })
+    if !value.is_finite() || !holds(value) {
+        return Err(ConfigError::OutOfRange { field, range, value });
     }
+    let rounded = value as f32;
+    if !rounded.is_finite() || !holds(f64::from(rounded)) {
+        return Err(ConfigError::SinglePrecision { field, range, value, rounded });
+    }
+    Ok(())
 }
 
 #[cfg(test)]
@@ -227,6 +262,31 @@ mod tests {
             "replay_capacity must be at least batch_size = 128, got 100",
         );
         check_refused(|s| s.log_std_max = -20.0, "log_std_min must be below log_std_max, got -20 and -20");
+    }
+
+    #[test]
+    fn refuses_values_that_single_precision_takes_out_of_their_range() {
+        check_refused(
+            |s| s.adam_epsilon = 1e-60,
+            "adam_epsilon must be finite and > 0 in single precision, where 1e-60 becomes 0",
+        );
+        check_refused(
+            |s| s.learning_rate = 1e50,
+            "learning_rate must be finite and > 0 in single precision, where 1e50 becomes inf",
+        );
+        check_refused(
+            |s| s.adam_beta_2 = 1.0 - 1e-10,
+            "adam_beta_2 must be in [0, 1) in single precision, where 9.999999999e-1 becomes 1",
+        );
+    }
+
+    #[test]
+    fn refuses_networks_beyond_all_memory() {
+        check_refused(
+            |s| s.hidden = vec![256, 1 << 40],
+            "hidden (units of a layer) must be at most 8192, got 1099511627776",
+        );
+        check_refused(|s| s.hidden = vec![2; 17], "hidden (number of layers) must be at most 16, got 17");
     }
 
     #[test]

@@ -26,6 +26,7 @@ mod lanes;
 mod losses;
 mod network;
 mod noise;
+mod objective;
 mod policy;
 mod replay;
 mod squash;

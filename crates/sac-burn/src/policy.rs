@@ -4,7 +4,7 @@ use serde::{Deserialize, Serialize};
 
 use crate::lanes::apply_layer;
 use crate::network::Network;
-use crate::wire::{CheckpointError, Format, Frame, Unframe};
+use crate::wire::{CheckpointError, Format, Frame, Unframe, check_finite};
 
 const FORMAT: Format = Format { magic: *b"sac-plcy", name: "policy", version: 1 };
 
@@ -133,7 +133,7 @@ impl Policy {
     /// Reads what [`Policy::to_bytes`] wrote, and nothing else.
     ///
     /// # Errors
-    /// [`CheckpointError`] if the bytes are no policy, of another version, too short, too long or damaged.
+    /// [`CheckpointError`] if the bytes are no policy, of another version, too short, too long, damaged or not finite.
     pub fn from_bytes(bytes: &[u8]) -> Result<Self, CheckpointError> {
         let mut input = bytes;
         let (mut frame, header) = Unframe::begin::<Header>(&mut input, FORMAT)?;
@@ -149,6 +149,10 @@ impl Policy {
             frame.numbers(&mut layer.bias)?;
         }
         frame.finish()?;
+        for layer in &policy.layers {
+            check_finite("policy", &layer.weights)?;
+            check_finite("policy", &layer.bias)?;
+        }
         match input.len() {
             0 => Ok(policy),
             n => Err(CheckpointError::Inconsistent {

@@ -22,15 +22,15 @@ pub struct Replay {
 /// A drawn batch, each part row-major.
 #[derive(Clone, Debug, Default)]
 pub struct Batch {
-    /// [batch, observation].
+    /// \[batch, observation\].
     pub observations: Vec<f32>,
-    /// [batch, action].
+    /// \[batch, action\].
     pub actions: Vec<f32>,
-    /// [batch, observation].
+    /// \[batch, observation\].
     pub next_observations: Vec<f32>,
-    /// [batch].
+    /// \[batch\].
     pub rewards: Vec<f32>,
-    /// [batch]: 0 where the step was terminal, else 1.
+    /// \[batch\]: 0 where the step was terminal, else 1.
     pub continuations: Vec<f32>,
 }
 

@@ -69,9 +69,25 @@ pub enum CheckpointError {
         /// What the file says.
         found: u64,
     },
+    /// Training had diverged: such weights are of no use, neither written nor read.
+    #[error("not finite: a number of the {part} is {value}")]
+    NotFinite {
+        /// What holds it.
+        part: &'static str,
+        /// NaN or an infinity.
+        value: f64,
+    },
     /// There is no memory for the replay that the file describes.
     #[error(transparent)]
     Replay(#[from] crate::replay::ReplayAllocationError),
+}
+
+/// Refuses an array that holds NaN or an infinity.
+pub(crate) fn check_finite(part: &'static str, values: &[f32]) -> Result<(), CheckpointError> {
+    match values.iter().find(|x| !x.is_finite()) {
+        Some(&value) => Err(CheckpointError::NotFinite { part, value: f64::from(value) }),
+        None => Ok(()),
+    }
 }
 
 /// Kind of file.

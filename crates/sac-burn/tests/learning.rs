@@ -18,7 +18,8 @@ fn spec() -> ConfigSpec {
 }
 
 fn agent(spec: ConfigSpec, observation_dim: usize, seed: u64) -> Agent {
-    Agent::new(Config::try_from(spec).unwrap(), observation_dim, 1, seed).unwrap()
+    let config = Config::try_from(spec).expect("the specification is valid");
+    Agent::new(config, observation_dim, 1, seed).expect("there is memory for the replay")
 }
 
 /// Point mass on a line: the action is its velocity, 0.2 per step at most; the episode ends at the origin.
@@ -118,7 +119,7 @@ fn learnt_value(outcome: Outcome) -> f64 {
             next_observation: &[1.0],
             outcome,
         };
-        agent.remember(&transition).unwrap();
+        agent.remember(&transition).expect("the transition is finite");
         if let Some(losses) = agent.update() {
             last = losses.mean_q;
         }

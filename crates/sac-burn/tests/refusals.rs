@@ -2,6 +2,8 @@
 
 mod common;
 
+use std::io::{self, Write};
+
 use common::{World, agent, saved, small};
 use sac_burn::{Agent, CheckpointError, ConfigSpec, Policy};
 
@@ -80,4 +82,37 @@ fn loading_stops_right_behind_the_checkpoint() {
     let mut rest = bytes.as_slice();
     Agent::load(&mut rest).unwrap();
     assert_eq!(rest, b"curriculum");
+}
+
+/// A disk with room for so many bytes.
+struct Disk(usize);
+
+impl Write for Disk {
+    fn write(&mut self, bytes: &[u8]) -> io::Result<usize> {
+        if bytes.len() > self.0 {
+            return Err(io::ErrorKind::StorageFull.into());
+        }
+        self.0 -= bytes.len();
+        Ok(bytes.len())
+    }
+
+    fn flush(&mut self) -> io::Result<()> {
+        Ok(())
+    }
+}
+
+#[test]
+fn a_full_disk_is_an_error_of_the_stream_and_the_agent_goes_on() {
+    let mut agent = agent(small(), 1);
+    World { tick: 0 }.run(&mut agent, 70);
+    let whole = saved(&agent);
+    for room in [0, 20, 1000, whole.len() - 1] {
+        let error = agent.save(&mut Disk(room)).unwrap_err();
+        assert!(
+            matches!(&error, CheckpointError::Io(cause) if cause.kind() == io::ErrorKind::StorageFull),
+            "{room} bytes of room: {error}"
+        );
+    }
+    assert!(agent.save(&mut Disk(whole.len())).is_ok());
+    assert!(saved(&agent) == whole, "a failed save changed the agent");
 }

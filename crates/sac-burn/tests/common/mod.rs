@@ -18,7 +18,8 @@ pub(crate) fn small() -> ConfigSpec {
 }
 
 pub(crate) fn agent(spec: ConfigSpec, seed: u64) -> Agent {
-    Agent::new(Config::try_from(spec).unwrap(), 3, 2, seed).unwrap()
+    let config = Config::try_from(spec).expect("the specification is valid");
+    Agent::new(config, 3, 2, seed).expect("there is memory for the replay")
 }
 
 /// A deterministic world of three observed numbers: enough to exercise the agent, nothing to learn.
@@ -53,7 +54,7 @@ impl World {
                 next_observation: &next_observation,
                 outcome,
             };
-            agent.remember(&transition).unwrap();
+            agent.remember(&transition).expect("the transition is finite");
             trace.extend(action.map(|a| u64::from(a.to_bits())));
             trace.extend(agent.update().map(bits).into_iter().flatten());
         }
@@ -77,6 +78,6 @@ pub(crate) fn bits(losses: Losses) -> [u64; 8] {
 
 pub(crate) fn saved(agent: &Agent) -> Vec<u8> {
     let mut bytes = Vec::new();
-    agent.save(&mut bytes).unwrap();
+    agent.save(&mut bytes).expect("memory can be written");
     bytes
 }
