@@ -26,3 +26,11 @@ pub const DIFFERENCE_STEP: f64 = 1e-5;
 /// Central differences, relative to the largest value: truncation 1e-10 times third derivatives of up to 1e3,
 /// rounding 1e-15 / 1e-5.
 pub const DIFFERENCE: f64 = 1e-7;
+
+/// Energy after 800 steps of the fourth-order method, relative to the kinetic energy at the start: (0.5 ms)⁴ times
+/// fifth derivatives of up to 1e3, far below; rounding of potential energy 1e4 times larger, 1e-12.
+pub const ENERGY: f64 = 1e-9;
+
+/// Dissipated energy by the trapezoidal rule at 50 µs, relative: (period / 3 ms)² / 12, where 3 ms is the shortest
+/// time constant that friction at rest has here.
+pub const TRAPEZOID: f64 = 1e-4;

@@ -1,0 +1,153 @@
+//! Energy along motions: kept without friction, lost with it, and the order of both integrators.
+#![expect(clippy::unwrap_used, reason = "helpers of tests are tests too")]
+
+mod support;
+
+use hiab_dynamics::{CraneModel, Data, DynamicsError, PlantFile, Wrench};
+use support::{PLANTS, crane, max_abs, position_at, tolerance, velocity_at};
+
+type Step = fn(
+    &CraneModel,
+    &mut Data,
+    &mut [f64],
+    &mut [f64],
+    &[f64],
+    Option<&Wrench>,
+    f64,
+) -> Result<(), DynamicsError>;
+
+const INTEGRATORS: [(&str, Step, f64); 2] =
+    [("semi_implicit_euler", CraneModel::semi_implicit_euler, 1.0), ("rk4", CraneModel::rk4, 4.0)];
+
+/// Duration of every motion here [s].
+const DURATION: f64 = 0.4;
+
+/// Every joint in the middle of its range and at a third of its velocity limit.
+fn start(model: &CraneModel) -> (Vec<f64>, Vec<f64>) {
+    let share = [1.0, -1.0, 1.0, -1.0, 1.0, -1.0, 1.0].map(|sign| sign / 3.0);
+    (position_at(model, &[0.5; 7]), velocity_at(model, &share))
+}
+
+/// The crane with reflected inertia on every cylinder but without friction.
+fn with_armature() -> CraneModel {
+    let mut plant = PlantFile::from_ron(PLANTS).unwrap().plant("electric").unwrap().clone();
+    for values in plant.actuators.values_mut() {
+        (values.coulomb, values.viscous) = (0.0, 0.0);
+    }
+    crane().with_plant(&plant).unwrap()
+}
+
+/// Effort that holds the start against gravity, so that the motion stays within every loop's range.
+fn holding(model: &CraneModel) -> Vec<f64> {
+    let (position, velocity) = start(model);
+    let mut data = model.new_data();
+    model.update_dynamics(&mut data, &position, &velocity).unwrap();
+    data.gravity_effort().to_vec()
+}
+
+fn run(model: &CraneModel, step: Step, effort: &[f64], steps: u32) -> (Vec<f64>, Vec<f64>) {
+    let (mut position, mut velocity) = start(model);
+    let mut data = model.new_data();
+    for _ in 0..steps {
+        let period = DURATION / f64::from(steps);
+        step(model, &mut data, &mut position, &mut velocity, effort, None, period).unwrap();
+    }
+    (position, velocity)
+}
+
+/// Kinetic and potential energy, less the work of a constant `effort` up to `position`.
+fn conserved(model: &CraneModel, effort: &[f64], position: &[f64], velocity: &[f64]) -> f64 {
+    let mut data = model.new_data();
+    model.update_kinematics(&mut data, position, velocity).unwrap();
+    let work: f64 = effort.iter().zip(position).map(|(e, y)| e * y).sum();
+    model.kinetic_energy(&data) + model.potential_energy(&data) - work
+}
+
+fn drift(model: &CraneModel, step: Step, effort: &[f64], steps: u32) -> f64 {
+    let (position, velocity) = start(model);
+    let before = conserved(model, effort, &position, &velocity);
+    let (position, velocity) = run(model, step, effort, steps);
+    (conserved(model, effort, &position, &velocity) - before).abs()
+}
+
+fn frictionless_cases() -> [(&'static str, CraneModel, Vec<f64>); 4] {
+    let weightless = crane().with_gravity([0.0; 3]).unwrap();
+    let loaded = crane().with_payload(200.0).unwrap();
+    let armature = with_armature();
+    let (of_loaded, of_armature) = (holding(&loaded), holding(&armature));
+    [
+        ("no gravity, no effort", weightless, vec![0.0; 7]),
+        ("free fall, no effort", crane(), vec![0.0; 7]),
+        ("200 kg, constant effort", loaded, of_loaded),
+        ("armature, constant effort", armature, of_armature),
+    ]
+}
+
+#[test]
+fn a_fourth_order_step_keeps_energy_without_effort_and_friction() {
+    for (case, model, effort) in frictionless_cases() {
+        let (position, velocity) = start(&model);
+        let mut data = model.new_data();
+        model.update_kinematics(&mut data, &position, &velocity).unwrap();
+        let scale = model.kinetic_energy(&data);
+        let drift = drift(&model, CraneModel::rk4, &effort, 800) / scale;
+        assert!(drift < tolerance::ENERGY, "{case}: relative energy drift {drift:e}");
+    }
+}
+
+#[test]
+fn energy_drift_falls_with_the_order_of_the_integrator() {
+    for (case, model, effort) in frictionless_cases() {
+        for (name, step, order) in INTEGRATORS {
+            let (coarse, fine) = (drift(&model, step, &effort, 20), drift(&model, step, &effort, 40));
+            let found = (coarse / fine).log2();
+            assert!(found > order - 0.5, "{case}, {name}: order {found}, drifts {coarse:e} and {fine:e}");
+        }
+    }
+}
+
+#[test]
+fn states_converge_with_the_order_of_the_integrator() {
+    for (case, model, effort) in frictionless_cases() {
+        let (exact, _) = run(&model, CraneModel::rk4, &effort, 1600);
+        for (name, step, order) in INTEGRATORS {
+            let error = |steps| {
+                let (position, _) = run(&model, step, &effort, steps);
+                let difference: Vec<f64> = position.iter().zip(&exact).map(|(p, e)| p - e).collect();
+                max_abs(&difference)
+            };
+            let (coarse, fine) = (error(20), error(40));
+            let found = (coarse / fine).log2();
+            assert!(
+                (found - order).abs() < 0.5,
+                "{case}, {name}: order {found}, errors {coarse:e} and {fine:e}"
+            );
+        }
+    }
+}
+
+#[test]
+fn friction_takes_exactly_the_energy_that_it_dissipates() {
+    let plants = PlantFile::from_ron(PLANTS).unwrap();
+    for name in ["electric", "hydraulic"] {
+        let model = crane().with_plant(plants.plant(name).unwrap()).unwrap();
+        let effort = holding(&model);
+        let (mut position, mut velocity) = start(&model);
+        let (mut data, mut friction) = (model.new_data(), vec![0.0; 7]);
+        let mut power = |velocity: &[f64]| -> f64 {
+            model.friction_effort(velocity, &mut friction).unwrap();
+            friction.iter().zip(velocity).map(|(f, v)| f * v).sum()
+        };
+        let before = conserved(&model, &effort, &position, &velocity);
+        let (mut lost, period) = (0.0, 5e-5);
+        for _ in 0..4000 {
+            let at_start = power(&velocity);
+            assert!(at_start >= 0.0, "{name}: friction drives the crane with {at_start} W");
+            model.rk4(&mut data, &mut position, &mut velocity, &effort, None, period).unwrap();
+            lost += 0.5 * period * (at_start + power(&velocity));
+        }
+        let taken = before - conserved(&model, &effort, &position, &velocity);
+        let error = (taken / lost - 1.0).abs();
+        assert!(error < tolerance::TRAPEZOID, "{name}: lost {lost} J, missing {taken} J");
+    }
+}
