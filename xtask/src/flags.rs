@@ -54,7 +54,7 @@ pub(crate) const COMMANDS: &[Command] = &[
             optional("run", "NAME", "folder of the run under runs/"),
             optional("seed", "N", "seed of everything random, instead of the configuration's"),
             optional("episodes", "N", "stop after so many episodes, instead of the configuration's"),
-            optional("config", "FILE", "configuration, instead of the stage's own in assets/config/"),
+            optional("config", "FILE", "configuration, instead of assets/config/default.ron"),
             switch("resume", "continue from the run's latest checkpoint"),
             switch("quiet", "no progress on standard error"),
             switch("plain", "progress as lines, on a terminal too"),
