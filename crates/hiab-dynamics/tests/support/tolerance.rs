@@ -31,6 +31,7 @@ pub const DIFFERENCE: f64 = 1e-7;
 /// fifth derivatives of up to 1e3, far below; rounding of potential energy 1e4 times larger, 1e-12.
 pub const ENERGY: f64 = 1e-9;
 
-/// Dissipated energy by the trapezoidal rule at 50 µs, relative: (period / 3 ms)² / 12, where 3 ms is the shortest
-/// time constant that friction at rest has here.
+/// Dissipated energy by the trapezoidal rule at 50 µs, relative: (period / 0.35 ms)² / 12 = 2e-3 of what is lost in
+/// the last moments before the lightest cylinder, 142 kg on 4000 N within 0.01 m/s, is at rest; less than a
+/// twentieth of the whole.
 pub const TRAPEZOID: f64 = 1e-4;
