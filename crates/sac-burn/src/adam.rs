@@ -101,4 +101,17 @@ mod tests {
             assert!((parameter[0] + 0.1).abs() < 1e-5, "gradient {gradient}: moved by {parameter:?}");
         }
     }
+
+    #[test]
+    fn moments_of_a_parameter_without_gradient_fade_to_exactly_zero_and_never_become_subnormal() {
+        let (mut parameters, mut moments) = ([0.3f32; 20], Moments::zero(20));
+        adam(optimizer().step(1), &mut parameters, &mut moments, &[0.5; 20]);
+        for count in 2..4000 {
+            adam(optimizer().step(count), &mut parameters, &mut moments, &[0.0; 20]);
+            for moment in moments.first.iter().chain(&moments.second) {
+                assert!(!moment.is_subnormal(), "step {count}: {moment:e}");
+            }
+        }
+        assert_eq!(moments, Moments::zero(20));
+    }
 }
