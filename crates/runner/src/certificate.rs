@@ -47,6 +47,8 @@ pub struct Part<'a> {
     pub empty_ranges: u64,
     /// Share of ranges that the position limits narrowed.
     pub intervention_rate: f64,
+    /// Actions outside [-1, 1] that counted as the nearer end.
+    pub clamped_actions: u64,
     /// Controller commands.
     pub commands: u64,
     /// Of these, saturated.
@@ -69,6 +71,7 @@ impl<'a> Part<'a> {
             narrowed_ranges: evidence.narrowed_ranges,
             empty_ranges: evidence.empty_ranges,
             intervention_rate: evidence.intervention_rate(),
+            clamped_actions: evidence.clamped_actions,
             commands: evidence.commands,
             saturated_commands: evidence.saturated_commands,
             failsafe_count: evidence.failsafe_commands,

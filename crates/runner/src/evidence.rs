@@ -102,6 +102,8 @@ pub struct Evidence {
     pub empty_ranges: u64,
     /// Commands that the fail-safe gave instead of the policy.
     pub failsafe_commands: u64,
+    /// Actions outside [-1, 1] that counted as the nearer end.
+    pub clamped_actions: u64,
     /// Controller commands, all joints together.
     pub commands: u64,
     /// Controller commands that saturated.
@@ -128,6 +130,7 @@ impl Evidence {
             narrowed_ranges: 0,
             empty_ranges: 0,
             failsafe_commands: 0,
+            clamped_actions: 0,
             commands: 0,
             saturated_commands: 0,
             held_joint_tip_error: 0.0,
@@ -178,6 +181,7 @@ impl Evidence {
         self.narrowed_ranges += other.narrowed_ranges;
         self.empty_ranges += other.empty_ranges;
         self.failsafe_commands += other.failsafe_commands;
+        self.clamped_actions += other.clamped_actions;
         self.commands += other.commands;
         self.saturated_commands += other.saturated_commands;
         self.held_joint_tip_error = self.held_joint_tip_error.max(other.held_joint_tip_error);

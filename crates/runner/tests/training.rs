@@ -1,0 +1,306 @@
+//! Training on the real crane, small networks: repeats, resumes, survives being killed, and proves its limits.
+#![expect(clippy::unwrap_used, reason = "helpers of tests are tests too")]
+
+mod support;
+
+use std::fs;
+use std::process::{Command, Output, Stdio};
+
+use runner::config::ConfigSpec;
+use runner::stage::Stage;
+use serde_json::Value;
+use support::{Project, check_refusal, check_success};
+
+/// Episodes of a small training; half of them is a whole number too.
+const EPISODES: u64 = 12;
+
+/// A project whose default configuration is small: networks of 16, episodes of 20 steps, updates from step 60 on.
+fn small_project() -> Project {
+    let project = Project::new();
+    let mut config = ConfigSpec::read(&project.path(runner::config::DEFAULT)).unwrap();
+    let learner = sac_burn::ConfigSpec {
+        hidden: vec![16, 16],
+        batch_size: 16,
+        random_steps: 60,
+        update_after: 60,
+        replay_capacity: 2_000,
+        ..config.learner.spec().clone()
+    };
+    config.learner = sac_burn::Config::try_from(learner).unwrap();
+    config.task.max_steps = 20;
+    config.curriculum.confirm_episodes = 4;
+    config.curriculum.checkpoint_every = 50;
+    project.write(runner::config::DEFAULT, config.to_ron().unwrap());
+    project
+}
+
+fn runner() -> Command {
+    Command::new(env!("CARGO_BIN_EXE_runner"))
+}
+
+fn train(project: &Project, arguments: &str) -> Output {
+    project.run(runner(), &format!("train --quiet {arguments}"))
+}
+
+fn json(project: &Project, path: &str) -> Value {
+    serde_json::from_str(&project.text(path)).unwrap()
+}
+
+#[test]
+fn every_stage_trains_in_order_and_proves_its_limits() {
+    let project = small_project();
+    let report = check_success(&train(&project, &format!("--all --run a --episodes {EPISODES}")));
+    for stage in Stage::ALL {
+        assert!(report.contains(&format!("{stage}: ")), "{report}");
+        let folder = format!("runs/a/{stage}");
+        let metrics = project.text(&format!("{folder}/metrics.jsonl"));
+        let records: Vec<Value> = metrics.lines().map(|line| serde_json::from_str(line).unwrap()).collect();
+        assert_eq!(records.len() as u64, EPISODES);
+        let last = records.last().unwrap();
+        assert!(last["step"].as_u64().unwrap() > 100, "{last}");
+        for loss in ["critic", "actor", "entropy_temperature", "mean_q", "entropy"] {
+            assert!(last["losses"][loss].as_f64().unwrap().is_finite(), "{loss} in {last}");
+        }
+        let certificate = json(&project, &format!("{folder}/certificate.json"));
+        assert_eq!(certificate["violations"]["reference"], 0, "{certificate}");
+        assert_eq!(certificate["violations"]["actual"], 0, "{certificate}");
+        for part in ["training", "evaluation"] {
+            let part = &certificate[part];
+            assert_eq!(part["empty_ranges"], 0);
+            assert!(part["ranges"].as_u64().unwrap() > 100);
+            for joint in ["lift_joint", "tilt_joint", "telescope_joint", "slew_joint", "wrist_pitch_joint"] {
+                for motion in ["reference", "actual"] {
+                    for quantity in ["position", "velocity", "acceleration", "jerk"] {
+                        let margin = part["joints"][joint][motion][quantity].as_f64().unwrap();
+                        assert!((0.0..=1.0).contains(&margin), "{joint} {motion} {quantity}: {margin}");
+                    }
+                }
+            }
+        }
+        let resolved = ConfigSpec::read(&project.path(&format!("{folder}/config.ron"))).unwrap();
+        assert_eq!(resolved, ConfigSpec::read(&project.path(runner::config::DEFAULT)).unwrap());
+    }
+}
+
+#[test]
+fn one_seed_is_one_training_and_another_is_another() {
+    let project = small_project();
+    for run in ["a --seed 3", "b --seed 3", "c --seed 4"] {
+        check_success(&train(&project, &format!("--stage purple --run {run} --episodes {EPISODES}")));
+    }
+    for file in ["metrics.jsonl", "eval.json", "certificate.json", "checkpoints/latest", "checkpoints/best"] {
+        let of = |run: &str| project.bytes(&format!("runs/{run}/purple/{file}"));
+        assert!(of("a") == of("b"), "{file} differs between two runs with one seed");
+        assert!(of("a") != of("c"), "{file} does not depend on the seed");
+    }
+}
+
+#[test]
+fn a_resumed_training_equals_one_that_never_stopped() {
+    let project = small_project();
+    check_success(&train(&project, &format!("--stage purple --run whole --episodes {EPISODES}")));
+    check_success(&train(&project, &format!("--stage purple --run halves --episodes {}", EPISODES / 2)));
+    let half = project.text("runs/halves/purple/metrics.jsonl");
+    assert_eq!(half.lines().count() as u64, EPISODES / 2);
+    check_success(&train(&project, &format!("--stage purple --run halves --resume --episodes {EPISODES}")));
+    check_same_training(&project, "whole", "halves");
+}
+
+#[test]
+fn a_killed_training_resumes_from_its_last_checkpoint() {
+    let project = small_project();
+    let episodes = 5 * EPISODES;
+    check_success(&train(&project, &format!("--stage purple --run whole --episodes {episodes}")));
+    let mut killed = runner()
+        .args([
+            "train",
+            "--quiet",
+            "--stage",
+            "purple",
+            "--run",
+            "killed",
+            "--episodes",
+            &episodes.to_string(),
+        ])
+        .current_dir(project.path(""))
+        .stdout(Stdio::null())
+        .spawn()
+        .unwrap();
+    // Far enough that it learns; the episodes that follow are lost and come again.
+    let metrics = project.path("runs/killed/purple/metrics.jsonl");
+    let learns = || fs::read_to_string(&metrics).is_ok_and(|text| text.lines().count() as u64 >= EPISODES);
+    while !learns() {
+        assert!(killed.try_wait().unwrap().is_none(), "it ended before it was killed");
+        std::thread::yield_now();
+    }
+    killed.kill().unwrap();
+    killed.wait().unwrap();
+    // What a kill in the middle of a write leaves.
+    project.write("runs/killed/purple/checkpoints/latest.1.partial", b"half");
+    fs::OpenOptions::new()
+        .append(true)
+        .open(&metrics)
+        .and_then(|mut file| {
+            use std::io::Write;
+            file.write_all(b"{\"episode\":9")
+        })
+        .unwrap();
+    check_success(&train(&project, &format!("--stage purple --run killed --resume --episodes {episodes}")));
+    check_same_training(&project, "whole", "killed");
+}
+
+#[track_caller]
+fn check_same_training(project: &Project, one: &str, other: &str) {
+    let of = |run: &str, file: &str| project.bytes(&format!("runs/{run}/purple/{file}"));
+    for file in ["metrics.jsonl", "eval.json", "certificate.json"] {
+        let (one, other) = (of(one, file), of(other, file));
+        assert_eq!(String::from_utf8(one).unwrap(), String::from_utf8(other).unwrap(), "{file}");
+    }
+    assert!(
+        of(one, "checkpoints/latest") == of(other, "checkpoints/latest"),
+        "weights, replay or random state"
+    );
+}
+
+#[test]
+fn an_evaluation_has_the_promised_keys_and_repeats() {
+    let project = small_project();
+    check_success(&train(&project, "--stage purple --run a --episodes 4"));
+    let arguments = "eval --run a --stage purple --episodes 5 --seed 11 --json result.json";
+    let printed = check_success(&project.run(runner(), arguments));
+    assert_eq!(printed, project.text("result.json"));
+    assert_eq!(
+        printed,
+        check_success(&project.run(runner(), arguments)),
+        "the same episodes, the same result"
+    );
+    let result: Value = serde_json::from_str(&printed).unwrap();
+    let keys = |value: &Value| value.as_object().unwrap().keys().cloned().collect::<Vec<_>>();
+    let mut expected = vec![
+        "episodes",
+        "success_rate",
+        "success_ci95",
+        "time_to_reach_s",
+        "tip_error_m",
+        "violations",
+        "worst_margin",
+        "tracking_error",
+        "held_joint_tip_error_m",
+        "intervention_rate",
+        "saturation_rate",
+        "failsafe_count",
+    ];
+    expected.sort_unstable();
+    assert_eq!(keys(&result), expected);
+    assert_eq!(keys(&result["time_to_reach_s"]), ["mean", "median", "p95"]);
+    assert_eq!(keys(&result["tip_error_m"]), ["max", "mean"]);
+    assert_eq!(keys(&result["violations"]), ["actual", "reference"]);
+    assert_eq!(keys(&result["worst_margin"]), ["acceleration", "jerk", "position", "velocity"]);
+    assert_eq!(keys(&result["held_joint_tip_error_m"]), ["max"]);
+    let tracking = &result["tracking_error"];
+    assert_eq!(keys(tracking).len(), 7);
+    assert_eq!(keys(&tracking["lift_joint"]), ["position_max", "velocity_max"]);
+    assert_eq!(result["episodes"], 5);
+    assert_eq!(
+        result["violations"]["reference"].as_u64().unwrap()
+            + result["violations"]["actual"].as_u64().unwrap(),
+        0
+    );
+}
+
+#[test]
+fn a_stage_without_the_one_before_names_the_command_to_run_first() {
+    let project = small_project();
+    let refused = train(&project, "--stage yellow --run a");
+    check_refusal(&refused, &["purple", "cargo xtask train --stage purple --run a"]);
+    assert!(!project.path("runs").exists(), "nothing was begun");
+    let refused = project.run(runner(), "eval --run a --stage purple");
+    check_refusal(&refused, &["cargo xtask train --stage purple --run a"]);
+    let refused = train(&project, "--stage purple --run a --resume");
+    check_refusal(&refused, &["nothing to resume", "cargo xtask train --stage purple --run a"]);
+}
+
+#[test]
+fn an_unknown_stage_is_answered_with_the_known_ones() {
+    let refused = train(&small_project(), "--stage green");
+    check_refusal(&refused, &["green", "purple, yellow and orange"]);
+}
+
+#[test]
+fn a_finished_stage_is_not_overwritten() {
+    let project = small_project();
+    check_success(&train(&project, "--stage purple --run a --episodes 4"));
+    let before = project.bytes("runs/a/purple/checkpoints/latest");
+    check_refusal(&train(&project, "--stage purple --run a"), &["runs/a/purple", "--resume", "--run"]);
+    assert!(before == project.bytes("runs/a/purple/checkpoints/latest"));
+}
+
+#[test]
+fn a_run_is_not_resumed_with_another_configuration_or_seed() {
+    let project = small_project();
+    check_success(&train(&project, "--stage purple --run a --episodes 4"));
+    let other = project.text(runner::config::DEFAULT).replace("discount: 0.99", "discount: 0.9");
+    project.write("other.ron", other);
+    check_refusal(&train(&project, "--stage purple --run a --resume --config other.ron"), &["discount"]);
+    check_refusal(&train(&project, "--stage purple --run a --resume --seed 9"), &["seed 0", "9"]);
+}
+
+#[test]
+fn a_damaged_checkpoint_is_refused_and_left_as_it_is() {
+    let project = small_project();
+    check_success(&train(&project, "--stage purple --run a --episodes 6"));
+    let path = "runs/a/purple/checkpoints/latest";
+    let whole = project.bytes(path);
+    let metrics = project.bytes("runs/a/purple/metrics.jsonl");
+    let flipped = |at: usize| {
+        let mut bytes = whole.clone();
+        bytes[at] ^= 1;
+        bytes
+    };
+    let mut damaged: Vec<Vec<u8>> = [0, 4, 20, 300, whole.len() / 2, whole.len() - 1]
+        .iter()
+        .map(|&length| whole[..length].to_vec())
+        .collect();
+    damaged.extend([0, 9, 25, 400, whole.len() / 2, whole.len() - 1].map(flipped));
+    damaged.push([whole.as_slice(), b"more"].concat());
+    for bytes in damaged {
+        project.write(path, &bytes);
+        check_refusal(
+            &train(&project, "--stage purple --run a --resume --episodes 8"),
+            &["checkpoint", path],
+        );
+        assert!(project.bytes(path) == bytes && project.bytes("runs/a/purple/metrics.jsonl") == metrics);
+    }
+    project.write(path, &whole);
+    check_success(&train(&project, "--stage purple --run a --resume --episodes 8"));
+}
+
+#[test]
+#[cfg(unix)]
+fn a_disk_that_takes_no_more_leaves_the_old_checkpoint_whole() {
+    let project = small_project();
+    check_success(&train(&project, "--stage purple --run a --episodes 4"));
+    let before = project.bytes("runs/a/purple/checkpoints/latest");
+    // No file may grow beyond 32 blocks of 512 bytes: every write of a checkpoint fails in its middle.
+    let limited = format!(
+        "trap '' XFSZ; ulimit -f 32; exec {} train --quiet --stage purple --run a --resume --episodes 8",
+        env!("CARGO_BIN_EXE_runner")
+    );
+    let refused = Command::new("sh").args(["-c", &limited]).current_dir(project.path("")).output().unwrap();
+    check_refusal(&refused, &["cannot write", "runs/a/purple/checkpoints", "as it was"]);
+    assert!(project.bytes("runs/a/purple/checkpoints/latest") == before);
+    let names = fs::read_dir(project.path("runs/a/purple/checkpoints")).unwrap();
+    let mut names: Vec<String> =
+        names.map(|entry| entry.unwrap().file_name().into_string().unwrap()).collect();
+    names.sort();
+    assert_eq!(names, ["best", "latest"], "no part of a file is left");
+    check_success(&train(&project, "--stage purple --run a --resume --episodes 8"));
+}
+
+#[test]
+fn a_name_of_a_run_stays_below_runs() {
+    let project = small_project();
+    for name in ["../elsewhere", "a/b", ".hidden"] {
+        check_refusal(&train(&project, &format!("--stage purple --run {name}")), &["--run", name]);
+    }
+}
