@@ -3,7 +3,20 @@
 /// A URDF and a loop file that do not make a crane.
 #[derive(Debug, thiserror::Error)]
 pub enum ModelError {
-    /// The URDF text could not be read.
+    /// The URDF is not XML; the message begins with line and column.
+    #[error("urdf: {0}")]
+    Xml(#[from] xml::reader::Error),
+    /// A link or joint of the URDF lacks something, or is no number where it should be one.
+    #[error("urdf: line {line}: {owner}: {fault}")]
+    UrdfText {
+        /// Line, from 1.
+        line: u64,
+        /// Link or joint.
+        owner: String,
+        /// What is wrong.
+        fault: TextFault,
+    },
+    /// The URDF is XML, but no URDF.
     #[error("urdf: {0}")]
     Urdf(#[from] urdf_rs::UrdfError),
     /// The loop file could not be read; the message begins with line and column.
@@ -200,6 +213,47 @@ pub enum ModelError {
     SingularMassMatrix {
         /// The first actuator whose pivot is not positive.
         joint: String,
+    },
+}
+
+/// How an element of a URDF is incomplete or no number.
+#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
+pub enum TextFault {
+    /// An attribute is missing.
+    #[error("<{element}> lacks the attribute `{attribute}`")]
+    NoAttribute {
+        /// The element.
+        element: String,
+        /// The attribute.
+        attribute: &'static str,
+    },
+    /// An element is missing in another.
+    #[error("<{element}> lacks <{child}>")]
+    NoChild {
+        /// The outer element.
+        element: String,
+        /// The one that it lacks.
+        child: &'static str,
+    },
+    /// An attribute that is not one number.
+    #[error("{attribute} of <{element}> must be a number, got `{text}`")]
+    NoNumber {
+        /// The element.
+        element: String,
+        /// The attribute.
+        attribute: &'static str,
+        /// Its text.
+        text: String,
+    },
+    /// An attribute that is not three numbers.
+    #[error("{attribute} of <{element}> must be three numbers, got `{text}`")]
+    NoVector {
+        /// The element.
+        element: String,
+        /// The attribute.
+        attribute: &'static str,
+        /// Its text.
+        text: String,
     },
 }
 

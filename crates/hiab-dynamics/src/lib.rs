@@ -32,11 +32,12 @@ mod plant;
 mod spatial;
 mod tree;
 mod triangle;
+mod urdf_text;
 
 pub use actuator::Actuator;
 pub use data::Data;
 pub use dynamics::Wrench;
-pub use error::{DynamicsError, LoopFault, ModelError, PlantError, TreeFault};
+pub use error::{DynamicsError, LoopFault, ModelError, PlantError, TextFault, TreeFault};
 pub use evaluation::{Evaluation, StateQuery};
 pub use kinematics::{Pose, Twist};
 pub use loop_file::{ActuatorSpec, Branch, ClosedLoopSpec, LoopFile, LoopKind};

@@ -8,6 +8,7 @@ use urdf_rs::JointType;
 
 use crate::error::{ModelError, TreeFault};
 use crate::spatial::{MassProperties, Transform};
+use crate::urdf_text;
 
 /// A tree of bodies, each moved by one joint against its parent. Bodies and joints share their index; a parent's
 /// index is smaller than its child's.
@@ -68,6 +69,7 @@ impl Tree {
 
     /// Builds the tree from the URDF's text.
     pub(crate) fn from_urdf(text: &str) -> Result<Self, ModelError> {
+        urdf_text::check(text)?;
         let robot = urdf_rs::read_from_string(text)?;
         check_names(&robot)?;
         let mut own_mass = Vec::with_capacity(robot.links.len());

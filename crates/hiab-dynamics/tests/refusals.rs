@@ -35,12 +35,44 @@ fn check_loops(from: &str, to: &str, expected: &str) {
 
 #[test]
 fn refuses_a_urdf_that_is_not_one() {
-    check_urdf("</robot>", "", "urdf: ");
-    check_urdf(r#"<mass value="307.2960138"/>"#, r#"<mass value="heavy"/>"#, "urdf: ");
-    for text in ["", "\u{0}", "<robot", "<robot name=\"x\"></robot>", "(urdf: 1)"] {
+    check_urdf("</robot>", "", "urdf: 74:1 Unexpected end of stream");
+    check_urdf("<link name=\"tip\"/>", "<link name=\"tip\">", "urdf: 73:");
+    let half = CraneModel::from_urdf(&URDF[..URDF.len() / 2], LOOPS).unwrap_err().to_string();
+    check_line("half a file", &half, "urdf: ");
+    for text in ["", "\u{0}", "<robot", "(urdf: 1)"] {
+        let message = CraneModel::from_urdf(text, LOOPS).unwrap_err().to_string();
+        check_line(text, &message, "urdf: 1:");
+    }
+    for text in ["<robot name=\"x\"></robot>", "<robot/>", "<html><body/></html>"] {
         let message = CraneModel::from_urdf(text, LOOPS).unwrap_err().to_string();
         check_line(text, &message, "urdf");
     }
+}
+
+#[test]
+fn refuses_an_incomplete_urdf_with_line_and_owner() {
+    let cases = [
+        (
+            r#"mass value="307.2960138""#,
+            r#"mass value="heavy""#,
+            "line 9: link `column`: value of <mass> must be a number, got `heavy`",
+        ),
+        (r#"mass value="307.2960138""#, "mass", "line 9: link `column`: <mass> lacks the attribute `value`"),
+        (r#"<mass value="307.2960138"/>"#, "", "line 9: link `column`: <inertial> lacks <mass>"),
+        (r#" izz="5.259171""#, "", "line 9: link `column`: <inertia> lacks the attribute `izz`"),
+        (
+            r#"xyz="0.185 0 0.205""#,
+            r#"xyz="0.185 0""#,
+            "joint `lift_barrel_joint`: xyz of <origin> must be three numbers, got `0.185 0`",
+        ),
+        (r#"<parent link="base_link"/>"#, "", "joint `slew_joint`: <joint> lacks <parent>"),
+        (r#"<link name="tip"/>"#, "<link/>", "a link: <link> lacks the attribute `name`"),
+    ];
+    for (from, to, expected) in cases {
+        check_urdf(from, to, expected);
+    }
+    let stranger = r#"<gazebo><joint/><mass value="none"/></gazebo></robot>"#;
+    CraneModel::from_urdf(&edited(URDF, "</robot>", stranger), LOOPS).unwrap();
 }
 
 #[test]
