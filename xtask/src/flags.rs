@@ -42,7 +42,10 @@ pub(crate) const COMMANDS: &[Command] = &[
     Command {
         name: "tables",
         summary: "Build the braking tables of the crane's joints",
-        flags: &[switch("check", "change nothing; fail if a table is missing or out of date")],
+        flags: &[
+            switch("check", "change nothing; fail if a table is missing or out of date"),
+            optional("config", "FILE", "configuration, instead of assets/config/default.ron"),
+        ],
         example: "cargo xtask tables --check",
     },
     Command {
@@ -96,6 +99,7 @@ pub(crate) const COMMANDS: &[Command] = &[
             required("joint", "NAME", "joint, as in the crane's URDF (`_joint` may be left out)"),
             required("position", "P", "position now [m or rad]"),
             required("velocity", "V", "velocity now [m/s or rad/s]"),
+            optional("config", "FILE", "configuration, instead of assets/config/default.ron"),
             switch("json", "print JSON"),
         ],
         example: "cargo xtask zone --joint lift_joint --position 0.49 --velocity 0.05",
@@ -156,6 +160,7 @@ pub(crate) enum Invocation {
 #[derive(Debug, PartialEq)]
 pub(crate) struct Tables {
     pub(crate) check: bool,
+    pub(crate) config: Option<PathBuf>,
 }
 
 #[derive(Debug, PartialEq)]
@@ -204,6 +209,7 @@ pub(crate) struct Zone {
     pub(crate) joint: &'static str,
     pub(crate) position: f64,
     pub(crate) velocity: f64,
+    pub(crate) config: Option<PathBuf>,
     pub(crate) json: bool,
 }
 
@@ -220,7 +226,10 @@ impl Invocation {
             Parsed::Command(values) => values,
         };
         Ok(match parsed.command.name {
-            "tables" => Self::Tables(Tables { check: parsed.switch("check") }),
+            "tables" => Self::Tables(Tables {
+                check: parsed.switch("check"),
+                config: parsed.existing_file("config")?,
+            }),
             "train" => Self::Train(Train {
                 stages: match (parsed.one_of("stage", STAGES)?, parsed.switch("all")) {
                     (Some(stage), false) => Stages::One(stage),
@@ -261,6 +270,7 @@ impl Invocation {
                 joint: parsed.joint("joint")?,
                 position: parsed.number("position")?,
                 velocity: parsed.number("velocity")?,
+                config: parsed.existing_file("config")?,
                 json: parsed.switch("json"),
             }),
             "dynamics" => {

@@ -6,7 +6,9 @@ use std::process::ExitCode;
 
 impl Tables {
     pub(crate) fn call(&self) -> Call {
-        Call::new(Binary::Kinematics, "tables").switch("check", self.check)
+        Call::new(Binary::Kinematics, "tables")
+            .switch("check", self.check)
+            .option("config", self.config.as_deref())
     }
 
     pub(crate) fn run(self) -> anyhow::Result<ExitCode> {

@@ -10,6 +10,7 @@ impl Zone {
             .value("joint", self.joint)
             .value("position", self.position.to_string())
             .value("velocity", self.velocity.to_string())
+            .option("config", self.config.as_deref())
             .switch("json", self.json)
     }
 

@@ -1,13 +1,14 @@
 //! What the programs of this crate share: one command, its result on standard output, everything else on standard error.
 
-use std::io::{self, Write};
+use std::io::{self, IsTerminal, Write};
 use std::process::ExitCode;
 
 use anyhow::Result;
 
 /// Runs `dispatch` with the command and the words after it, prints its result, and turns an error into one line.
 pub fn run(dispatch: impl FnOnce(&str, Vec<String>) -> Result<String>) -> ExitCode {
-    tracing_subscriber::fmt().with_writer(io::stderr).without_time().with_target(false).init();
+    let is_terminal = io::stderr().is_terminal();
+    tracing_subscriber::fmt().with_writer(io::stderr).with_ansi(is_terminal).without_time().with_target(false).init();
     let mut words = std::env::args().skip(1);
     let command = words.next().unwrap_or_default();
     let printed = dispatch(&command, words.collect()).and_then(|result| print(&result));

@@ -311,7 +311,7 @@ pub fn table_path(config: &ConfigSpec, joint: &str) -> std::path::PathBuf {
 pub fn load_zone(config: &ConfigSpec, actuator: &Actuator) -> Result<SafeZone<'static>> {
     let planner = planner(actuator, config)?;
     let path = table_path(config, actuator.name());
-    let remedy = || format!("{}: rebuild it with: cargo xtask tables", path.display());
+    let remedy = || format!("{} (rebuild it with: cargo xtask tables [--config FILE])", path.display());
     let table = read_table(&path).with_context(remedy)?;
     SafeZone::new(planner, table).with_context(remedy)
 }

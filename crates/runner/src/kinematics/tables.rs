@@ -37,7 +37,7 @@ pub fn tables(config: &ConfigSpec, what: Tables) -> Result<String> {
         }
     }
     if !stale.is_empty() {
-        bail!("missing or stale: {}; rebuild with: cargo xtask tables", stale.join(", "));
+        bail!("missing or stale: {}; rebuild with: cargo xtask tables [--config FILE]", stale.join(", "));
     }
     Ok(report)
 }

@@ -23,6 +23,7 @@ pub(super) struct EpisodeRecord {
     /// True if the target was reached.
     pub(super) reached: bool,
     /// Sum of the rewards.
+    #[serde(rename = "return")]
     pub(super) return_: f64,
     /// Steps of the episode.
     pub(super) length: u32,
