@@ -8,7 +8,12 @@ use anyhow::Result;
 /// Runs `dispatch` with the command and the words after it, prints its result, and turns an error into one line.
 pub fn run(dispatch: impl FnOnce(&str, Vec<String>) -> Result<String>) -> ExitCode {
     let is_terminal = io::stderr().is_terminal();
-    tracing_subscriber::fmt().with_writer(io::stderr).with_ansi(is_terminal).without_time().with_target(false).init();
+    tracing_subscriber::fmt()
+        .with_writer(io::stderr)
+        .with_ansi(is_terminal)
+        .without_time()
+        .with_target(false)
+        .init();
     let mut words = std::env::args().skip(1);
     let command = words.next().unwrap_or_default();
     let printed = dispatch(&command, words.collect()).and_then(|result| print(&result));

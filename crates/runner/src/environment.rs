@@ -164,7 +164,9 @@ impl Environment {
             boom_velocity: &self.boom_velocity,
             tip: in_plane(self.tip.position),
             tip_velocity: in_plane(self.tip.velocity),
-            target: in_plane(self.target),
+            target_from_tip: in_plane(std::array::from_fn(|axis| {
+                self.target[axis] - self.tip.position[axis]
+            })),
             distance: self.distance(),
         };
         scaling.apply(&features, input);

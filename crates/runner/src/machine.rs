@@ -14,6 +14,9 @@ use crate::observation::{Scaling, ScalingSpec};
 use crate::region::Regions;
 use crate::store;
 
+/// Reach distances that count as near when the policy is shown where the target is.
+const NEAR: f64 = 10.0;
+
 /// Postures per moving joint at which the crane is surveyed.
 const SURVEY_POINTS: usize = 7;
 
@@ -194,8 +197,9 @@ impl Machine {
         &self.regions
     }
 
-    /// Constants that bring every feature to the order of one, all from the limits: see
-    /// [`crate::observation::Features`] for the order.
+    /// Constants that bring every feature to the order of one, from the limits: see
+    /// [`crate::observation::Features`] for the order. Where the target is, is scaled by what is near rather than by the
+    /// workspace, and so reaches the order of ten far away.
     ///
     /// # Panics
     /// Never: a checked machine has positive ranges.
@@ -216,11 +220,9 @@ impl Machine {
             values.fold(Interval::new(f64::INFINITY, f64::NEG_INFINITY), Interval::including)
         };
         let (x, z) = (extent(|corner| corner.0), extent(|corner| corner.1));
-        let place = ranges(&mut [x, z].into_iter());
-        pairs.extend(&place);
+        pairs.extend(ranges(&mut [x, z].into_iter()));
         pairs.extend([(0.0, self.survey.tip_speed); 2]);
-        pairs.extend(&place);
-        pairs.push((0.0, 0.5 * x.width().hypot(z.width())));
+        pairs.extend([(0.0, NEAR * self.task.reach_distance); 3]);
         let (offset, scale) = pairs.into_iter().unzip();
         Scaling::try_from(ScalingSpec { offset, scale }).expect("ranges of a checked machine are positive")
     }

@@ -6,7 +6,9 @@ use serde::{Deserialize, Serialize};
 ///
 /// Source: [P, Eq. (equation: 4a)], f_t, p_t, ṗ_t, x_t, ẋ_t, p and δp_t in this order. Joint positions are those of
 /// all actuators, then the angles of the booms that the cylinders turn; tip and target are (x, z) in the crane's
-/// plane, in which the whole task takes place.
+/// plane, in which the whole task takes place. The target is given from the tip, which with the tip's position says the
+/// same as the paper's p: both in metres of a workspace of four, their difference would drown near the target, and
+/// policies came to rest 6 to 15 cm beside it.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Features<'a> {
     /// Effort of every actuator [N·m or N].
@@ -23,8 +25,8 @@ pub struct Features<'a> {
     pub tip: [f64; 2],
     /// Tip velocity (x, z) [m/s].
     pub tip_velocity: [f64; 2],
-    /// Target (x, z) [m].
-    pub target: [f64; 2],
+    /// Target relative to the tip (x, z) [m].
+    pub target_from_tip: [f64; 2],
     /// Distance of tip and target [m].
     pub distance: f64,
 }
@@ -36,7 +38,7 @@ impl Features<'_> {
             .flatten()
             .chain(&self.tip)
             .chain(&self.tip_velocity)
-            .chain(&self.target)
+            .chain(&self.target_from_tip)
             .copied()
             .chain([self.distance])
     }
@@ -150,7 +152,7 @@ mod tests {
             boom_velocity: &[5.0],
             tip: [6.0, 7.0],
             tip_velocity: [8.0, 9.0],
-            target: [10.0, 11.0],
+            target_from_tip: [10.0, 11.0],
             distance: 12.0,
         };
         let scaling = Scaling::try_from(ScalingSpec { offset: vec![1.0; 12], scale: vec![2.0; 12] }).unwrap();
