@@ -13,7 +13,7 @@ use crate::spatial::Force;
 /// A force and a moment that the surroundings exert at the tip, world axes.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Wrench {
-    /// Force [N].
+    /// Force \[N\].
     pub force: [f64; 3],
     /// Moment about the tip [N·m].
     pub moment: [f64; 3],
@@ -191,7 +191,7 @@ impl CraneModel {
         Ok(())
     }
 
-    /// Kinetic energy [J], armature included, as of the last update.
+    /// Kinetic energy \[J\], armature included, as of the last update.
     pub fn kinetic_energy(&self, data: &Data) -> f64 {
         let bodies = self.masses.iter().enumerate().map(|(i, mass)| {
             let V_WB = &data.twist[i];
@@ -201,7 +201,7 @@ impl CraneModel {
         0.5 * (bodies.sum::<f64>() + motors.sum::<f64>())
     }
 
-    /// Potential energy of all moving bodies and the payload [J], zero at the world origin, as of the last update.
+    /// Potential energy of all moving bodies and the payload \[J\], zero at the world origin, as of the last update.
     pub fn potential_energy(&self, data: &Data) -> f64 {
         let bodies = self.masses.iter().zip(&data.X_WB);
         -bodies.map(|(mass, X_WB)| mass.mass * self.gravity.dot(&X_WB.point(&mass.center))).sum::<f64>()

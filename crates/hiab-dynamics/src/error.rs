@@ -77,7 +77,7 @@ pub enum ModelError {
     BadMass {
         /// The link.
         link: String,
-        /// Its mass [kg].
+        /// Its mass \[kg\].
         mass: f64,
     },
     /// A moving body without mass, links fixed to it included.
@@ -93,7 +93,7 @@ pub enum ModelError {
     BadInertia {
         /// The link, or the first link of a body of several.
         link: String,
-        /// Principal moments [kg·m²], ascending.
+        /// Principal moments \[kg·m²\], ascending.
         moments: [f64; 3],
         /// What they break.
         rule: &'static str,
@@ -197,13 +197,13 @@ pub enum ModelError {
         closed_loop: String,
         /// The cylinder's joint.
         joint: String,
-        /// Least stroke of the actuator [m].
+        /// Least stroke of the actuator \[m\].
         lower: f64,
-        /// Greatest stroke of the actuator [m].
+        /// Greatest stroke of the actuator \[m\].
         upper: f64,
-        /// Least solvable stroke [m]; greater than `solvable_upper` if there is none.
+        /// Least solvable stroke \[m\]; greater than `solvable_upper` if there is none.
         solvable_lower: f64,
-        /// Greatest solvable stroke [m].
+        /// Greatest solvable stroke \[m\].
         solvable_upper: f64,
     },
     /// The mass matrix is singular in the middle of the actuators' ranges.
@@ -380,11 +380,11 @@ pub enum DynamicsError {
     StrokeOutsideLoop {
         /// The loop.
         closed_loop: String,
-        /// The stroke [m].
+        /// The stroke \[m\].
         stroke: f64,
-        /// Least solvable stroke [m].
+        /// Least solvable stroke \[m\].
         lower: f64,
-        /// Greatest solvable stroke [m].
+        /// Greatest solvable stroke \[m\].
         upper: f64,
     },
     /// The mass matrix lost positive definiteness; only numbers near overflow do that.
@@ -398,7 +398,7 @@ pub enum DynamicsError {
     /// A step whose period is not a positive number.
     #[error("period must be finite and > 0, got {value}")]
     Period {
-        /// The period [s].
+        /// The period \[s\].
         value: f64,
     },
     /// A step that led to numbers beyond the range of `f64`.

@@ -30,7 +30,7 @@ pub struct StateQuery {
 /// Results at one state. Field names are those of the reference file; matrices are lists of rows.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Evaluation {
-    /// Tip position in the world [m].
+    /// Tip position in the world \[m\].
     pub tip_position: [f64; 3],
     /// Tip rotation in the world.
     pub tip_rotation: [[f64; 3]; 3],
@@ -56,9 +56,9 @@ pub struct Evaluation {
     /// Effort for the query's desired acceleration, if it has one.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub tau_inverse: Option<Vec<f64>>,
-    /// Kinetic energy [J].
+    /// Kinetic energy \[J\].
     pub kinetic_energy: f64,
-    /// Potential energy [J].
+    /// Potential energy \[J\].
     pub potential_energy: f64,
     /// Tree positions.
     pub tree_q: Vec<f64>,

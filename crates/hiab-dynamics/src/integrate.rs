@@ -9,7 +9,7 @@ use crate::model::CraneModel;
 impl CraneModel {
     /// One step of semi-implicit Euler: the acceleration moves the velocity, the new velocity the position.
     ///
-    /// First order; energy stays bounded. `position` and `velocity` are replaced by the state one `period` [s]
+    /// First order; energy stays bounded. `position` and `velocity` are replaced by the state one `period` \[s\]
     /// later, `effort` and `tip_wrench` held. Afterwards `data` describes the state *before* the step.
     ///
     /// # Errors

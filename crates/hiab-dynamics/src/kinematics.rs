@@ -13,7 +13,7 @@ use crate::tree::JointKind;
 /// Pose of a frame in the world.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct Pose {
-    /// Origin [m].
+    /// Origin \[m\].
     pub position: [f64; 3],
     /// Rotation matrix, row by row; its columns are the frame's axes.
     pub rotation: [[f64; 3]; 3],

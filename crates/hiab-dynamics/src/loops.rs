@@ -12,7 +12,7 @@ use crate::spatial::Transform;
 use crate::tree::{JointKind, Tree};
 use crate::triangle::Triangle;
 
-/// How far from parallel axes may be [1], and how far from one plane pins may be [m]: what rounding of published
+/// How far from parallel axes may be \[1\], and how far from one plane pins may be \[m\]: what rounding of published
 /// drawings to a micrometre leaves.
 const PLANARITY: f64 = 1e-6;
 
@@ -194,7 +194,7 @@ fn in_body(tree: &Tree, link: usize) -> Transform {
     tree.links[link].X_BL
 }
 
-/// Whole turns [rad] that bring `angle` nearest to `middle`, or into [−π, π] without one.
+/// Whole turns \[rad\] that bring `angle` nearest to `middle`, or into [−π, π] without one.
 fn turns_towards(middle: Option<f64>, angle: f64) -> f64 {
     TAU * ((middle.unwrap_or(0.0) - angle) / TAU).round()
 }

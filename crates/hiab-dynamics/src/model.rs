@@ -114,7 +114,7 @@ impl CraneModel {
         Ok(model)
     }
 
-    /// The same crane with a point mass `payload` [kg] at the tip; it replaces an earlier one.
+    /// The same crane with a point mass `payload` \[kg\] at the tip; it replaces an earlier one.
     ///
     /// # Errors
     /// [`ModelError::NotFinite`] or [`ModelError::Negative`].
@@ -205,7 +205,7 @@ impl CraneModel {
         self.tip_link
     }
 
-    /// Point mass at the tip [kg].
+    /// Mass of the payload \[kg\], a point at the tip.
     pub fn payload(&self) -> f64 {
         self.payload
     }

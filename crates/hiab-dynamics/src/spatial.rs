@@ -36,7 +36,7 @@ impl std::ops::Mul for Transform {
     }
 }
 
-/// Rotation by `angle` [rad] about the unit vector `axis` (Rodrigues).
+/// Rotation by `angle` \[rad\] about the unit vector `axis` (Rodrigues).
 #[inline]
 pub(crate) fn rotation_about(axis: &Vector3<f64>, angle: f64) -> Matrix3<f64> {
     let (s, c) = angle.sin_cos();
@@ -100,7 +100,7 @@ impl Motion {
         }
     }
 
-    /// Power of `wrench` on this twist [W].
+    /// Power of `wrench` on this twist \[W\].
     #[inline]
     pub(crate) fn dot(&self, wrench: &Force) -> f64 {
         self.angular.dot(&wrench.moment) + self.linear.dot(&wrench.force)
@@ -125,11 +125,11 @@ impl Force {
 /// Inertia of a body, or of several, about the world origin in world axes.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Inertia {
-    /// Mass [kg].
+    /// Mass \[kg\].
     pub(crate) mass: f64,
-    /// Mass times centre of mass [kg·m].
+    /// Mass times centre of mass \[kg·m\].
     pub(crate) first_moment: Vector3<f64>,
-    /// Rotational inertia about the world origin [kg·m²].
+    /// Rotational inertia about the world origin \[kg·m²\].
     pub(crate) about_origin: Matrix3<f64>,
 }
 
@@ -174,7 +174,7 @@ impl MassProperties {
         about_center: Matrix3::new(0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0),
     };
 
-    /// A point of `mass` [kg] at `center`.
+    /// A point of `mass` \[kg\] at `center`.
     pub(crate) fn point(mass: f64, center: Vector3<f64>) -> Self {
         Self { mass, center, ..Self::ZERO }
     }

@@ -29,25 +29,25 @@ pub(crate) const MIN_SIN_AT_HINGE: f64 = 0.15;
 /// Constants of one loop, made by `loops` from the pins of the URDF.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Triangle {
-    /// |OC| [m].
+    /// |OC| \[m\].
     pub(crate) a: f64,
-    /// |OP| [m].
+    /// |OP| \[m\].
     pub(crate) b: f64,
-    /// Length of CP along the barrel's axis at stroke 0, λ [m].
+    /// Length of CP along the barrel's axis at stroke 0, λ \[m\].
     pub(crate) lambda: f64,
-    /// Offset of P from the barrel's axis, η [m].
+    /// Offset of P from the barrel's axis, η \[m\].
     pub(crate) eta: f64,
     /// +1 if OP is turned from OC by +φ about the main joint's axis, −1 if by −φ.
     pub(crate) branch: f64,
-    /// Main joint's position at φ = 0 [rad], turns included.
+    /// Main joint's position at φ = 0 \[rad\], turns included.
     pub(crate) main_zero: f64,
-    /// Barrel joint's position at ψ = ρ = 0 [rad], turns included.
+    /// Barrel joint's position at ψ = ρ = 0 \[rad\], turns included.
     pub(crate) barrel_zero: f64,
     /// +1 if the barrel's axis is the main joint's, −1 if its opposite.
     pub(crate) barrel_sign: f64,
-    /// Least solvable stroke [m].
+    /// Least solvable stroke \[m\].
     pub(crate) min_stroke: f64,
-    /// Greatest solvable stroke [m].
+    /// Greatest solvable stroke \[m\].
     pub(crate) max_stroke: f64,
 }
 
@@ -60,7 +60,7 @@ pub(crate) struct Dependent {
 }
 
 impl Triangle {
-    /// Solvable strokes [m] by geometry alone, if there are any: sin φ ≥ [`MIN_SIN_AT_HINGE`] and u > 0.
+    /// Solvable strokes \[m\] by geometry alone, if there are any: sin φ ≥ [`MIN_SIN_AT_HINGE`] and u > 0.
     pub(crate) fn solvable_strokes(a: f64, b: f64, lambda: f64, eta: f64) -> Option<(f64, f64)> {
         let cos_limit = (1.0 - MIN_SIN_AT_HINGE * MIN_SIN_AT_HINGE).sqrt();
         let shortest = (a * a + b * b - 2.0 * a * b * cos_limit - eta * eta).max(0.0).sqrt();

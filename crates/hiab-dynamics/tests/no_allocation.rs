@@ -1,5 +1,4 @@
 //! After `new_data` nothing on the way of a control loop allocates.
-#![expect(clippy::unwrap_used, reason = "helpers of tests are tests too")]
 
 mod support;
 
