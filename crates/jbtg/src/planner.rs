@@ -33,6 +33,9 @@ pub struct Authority {
     /// Δ/(A·period): what zero acceleration at both ends of every period leaves of the acceleration limit A, in
     /// (0, 1).
     pub share: f64,
+    /// Velocity change of two full ramps without a cruise, dV_min of [P, Eq. (dvmin)] [rad/s or m/s], at most Δ.
+    /// With [`Timing::Fastest`] smaller changes have smaller ramps (MAP), larger ones a cruise (MSAP).
+    pub ramps_only: f64,
     /// Largest distance per velocity change by which a step first moves against its own direction, or has
     /// overshot before its end \[s\]. 0 for [`Shape::Smoothstep`].
     pub reverse_travel: f64,
@@ -101,7 +104,7 @@ impl TryFrom<PlannerSpec> for Planner {
         let increasing = PulseLimits::new(up, shape, timing, period);
         let decreasing = PulseLimits::new(down, shape, timing, period);
         for pulse in [&increasing, &decreasing] {
-            check_authority(pulse, period)?;
+            check_authority(pulse, period, speed)?;
         }
         let width = velocity.width();
         let margin = increasing.reverse_velocity(shape, width).max(decreasing.reverse_velocity(shape, width));
@@ -146,6 +149,7 @@ impl Planner {
         Authority {
             velocity_change: pulse.velocity_change,
             share: pulse.share,
+            ramps_only: pulse.ramps_only,
             reverse_travel: pulse.reverse_travel(self.spec.shape),
         }
     }
@@ -194,12 +198,8 @@ impl Planner {
     #[inline]
     pub fn displacement(&self, v1: f64, v2: f64) -> f64 {
         let change = v2 - v1;
-        let change_part = if change >= 0.0 {
-            self.increasing.displacement(change)
-        } else {
-            -self.decreasing.displacement(-change)
-        };
-        v1 * self.spec.period + change_part
+        let lag = if change >= 0.0 { self.increasing.lag(change) } else { -self.decreasing.lag(-change) };
+        v2 * self.spec.period - lag
     }
 
     /// The step from `position` and `v1` to `v2` in exactly one period.
@@ -273,14 +273,17 @@ fn check_finite(position: f64, v1: f64, v2: f64) -> Result<(), RampError> {
 }
 
 /// Refuses periods that leave next to nothing, and limits whose quintics would overflow or underflow.
-fn check_authority(pulse: &PulseLimits, period: f64) -> Result<(), PlannerError> {
+fn check_authority(pulse: &PulseLimits, period: f64, speed: f64) -> Result<(), PlannerError> {
     let (shortest, a) = (pulse.ramp_up.min(pulse.ramp_down), pulse.acceleration);
+    let longest = pulse.ramp_up.max(pulse.ramp_down);
+    let smallest_change = f64::EPSILON * speed.min(pulse.velocity_change); // smaller ones may vanish
     let numbers = [
         ("acceleration", a),
         ("velocity change", pulse.velocity_change),
         ("ramp duration", shortest),
         ("shortest ramp cubed", (1e-6 * shortest) * (1e-6 * shortest) * (1e-6 * shortest)),
         ("quintic coefficient", a / (shortest * shortest * shortest)),
+        ("quintic coefficient of a small step", smallest_change / (longest * longest) / (longest * longest)),
         ("displacement", period * pulse.velocity_change),
         ("braking distance scale", period / pulse.velocity_change),
     ];

@@ -38,10 +38,10 @@ pub(crate) struct PulseLimits {
     period: f64,
     /// Peak acceleration per velocity change of a stretched pulse [1/s].
     stretched_gain: f64,
-    /// Displacement per velocity change of a stretched pulse, over the whole period \[s\].
-    stretched_travel: f64,
+    /// Lag per velocity change of a stretched pulse \[s\].
+    stretched_lag: f64,
     /// Velocity change of two full ramps without a cruise, dV_min of [P, Eq. (dvmin)].
-    ramps_only: f64,
+    pub(crate) ramps_only: f64,
     /// ∫∫ of the shape over its ramp, A = T = 1.
     displacement: f64,
     timing: Timing,
@@ -97,7 +97,6 @@ impl PulseLimits {
         let width = period - 0.5 * (ramp_up + ramp_down);
         let cruise = (period - ramp_up - ramp_down).max(0.0);
         let largest = Pulse { acceleration: 1.0, ramp_up, cruise, ramp_down, rest: 0.0 };
-        let travel = largest.moment(constants.displacement) / width;
         Self {
             acceleration,
             ramp_up,
@@ -106,7 +105,7 @@ impl PulseLimits {
             share: acceleration * width / (bounds.along * period),
             period,
             stretched_gain: 1.0 / width,
-            stretched_travel: period - travel,
+            stretched_lag: largest.moment(constants.displacement) / width,
             ramps_only: 0.5 * acceleration * (ramp_up + ramp_down),
             displacement: constants.displacement,
             timing,
@@ -152,14 +151,15 @@ impl PulseLimits {
         }
     }
 
-    /// Displacement that a velocity change of `change` ≥ 0 adds over the whole period [rad or m].
+    /// Distance by which a step stays behind motion at its end velocity for the whole period, `change` ≥ 0
+    /// [rad or m]. It grows with the change.
     #[inline]
-    pub(crate) fn displacement(&self, change: f64) -> f64 {
+    pub(crate) fn lag(&self, change: f64) -> f64 {
         match self.timing {
-            Timing::Stretched => change * self.stretched_travel,
+            Timing::Stretched => change * self.stretched_lag,
             Timing::Fastest if change > 0.0 => {
                 let pulse = self.pulse(change);
-                change * self.period - pulse.acceleration * pulse.moment(self.displacement)
+                pulse.acceleration * pulse.moment(self.displacement)
             }
             Timing::Fastest => 0.0,
         }

@@ -16,9 +16,10 @@ impl BrakingTable<'static> {
     /// The braking table of `planner`'s joint.
     ///
     /// One knot per braking step with [`Timing::Stretched`], where the distance is linear in between; sixteen with
-    /// [`Timing::Fastest`], where it is convex, so that interpolation errs on the safe side, and by the same
-    /// amount in every step, so that the braking policy keeps the interpolated distance as well. Knots reach to
-    /// the velocity limit or to the first speed that the whole position interval cannot stop.
+    /// [`Timing::Fastest`], where it is convex but for one kink in every step, by which all knots are lifted. So
+    /// interpolation errs on the safe side, and by the same amount in every step, so that the braking policy keeps
+    /// the interpolated distance as well. Knots reach to the velocity limit or to the first speed that the whole
+    /// position interval cannot stop.
     ///
     /// # Errors
     /// [`BuildError::TooManyKnots`] if a direction needs more than [`MAX_KNOTS`].
@@ -36,6 +37,7 @@ impl BrakingTable<'static> {
 fn knots(planner: &Planner, side: Side, subdivisions: u32) -> Result<Vec<Knot>, BuildError> {
     let braking = Braking::new(planner, side);
     let spacing = braking.step / f64::from(subdivisions);
+    let lift = braking.kink_depth(planner, spacing);
     let mut knots = vec![Knot { distance: 0.0, velocity: 0.0 }];
     loop {
         let Knot { distance, velocity } = knots[knots.len() - 1];
@@ -46,7 +48,7 @@ fn knots(planner: &Planner, side: Side, subdivisions: u32) -> Result<Vec<Knot>, 
             return Err(BuildError::TooManyKnots { side, limit: MAX_KNOTS });
         }
         let velocity = knots.len() as f64 * spacing;
-        knots.push(Knot { distance: braking.distance(planner, velocity), velocity });
+        knots.push(Knot { distance: braking.distance(planner, velocity) + lift, velocity });
     }
 }
 

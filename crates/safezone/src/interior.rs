@@ -24,8 +24,7 @@ impl Approach<'_> {
             return lowest;
         }
         let stop = self.position + self.braking.distance(self.planner, self.velocity);
-        let tolerance = (1e-13 * braking.width).max(braking.rounding / 8.0);
-        let allowed = kept.max(stop + tolerance);
+        let allowed = kept.max(stop + 1e-13 * braking.width);
         if braking.stretched || self.velocity <= 0.0 {
             let anchor = self.brake.min(self.velocity);
             return lowest.max(anchor - (allowed - stop) / braking.reverse);

@@ -25,6 +25,8 @@ pub(crate) struct Braking {
     pub(crate) step: f64,
     /// The period \[s\].
     pub(crate) period: f64,
+    /// Change at which a step's distance may have a concave kink, see [`Braking::kink_depth`] [rad/s or m/s].
+    kink: f64,
     /// Displacement of the step from Δ to 0 [rad or m].
     last_step: f64,
     /// Excess of a step's interior over its ends, per velocity change \[s\]; 0 for the smoothstep.
@@ -68,6 +70,7 @@ impl Braking {
             limit,
             step,
             period,
+            kink: authority.ramps_only,
             last_step: sign * planner.displacement(sign * step, 0.0),
             reverse,
             velocity,
@@ -95,6 +98,20 @@ impl Braking {
         n * (0.5 * (n - 1.0) * self.step * self.period + self.last_step + self.period * r)
             + last
             + self.reverse * velocity.min(self.step)
+    }
+
+    /// How far the distance rises above its linear interpolation between knots `spacing` apart [rad or m].
+    ///
+    /// Within a braking step it is convex but for [`Timing::Fastest`] with a rising ramp longer than the falling
+    /// one: where ramps without a cruise (d ∝ v^1.5) pass into ramps with one, its slope falls.
+    pub(crate) fn kink_depth(&self, planner: &Planner, spacing: f64) -> f64 {
+        if self.stretched {
+            return 0.0;
+        }
+        let low = (self.kink / spacing) as u64 as f64 * spacing;
+        let [at_low, at_kink, at_high] = [low, self.kink, low + spacing].map(|v| self.distance(planner, v));
+        let between = at_low + (self.kink - low) / spacing * (at_high - at_low);
+        (at_kink - between).max(0.0)
     }
 
     /// Displacement of one step, mirrored [rad or m].

@@ -78,6 +78,18 @@ impl<'a> SafeZone<'a> {
         self.table.as_ref()
     }
 
+    /// Distance that a chosen velocity keeps from the limit at `side` when it is braked from [rad or m]: what rounding
+    /// may add on the way, and the overshoot of the ramp's shape.
+    ///
+    /// A start nearer to the limit than this is as safe, but for that rounding.
+    #[must_use]
+    pub const fn guard(&self, side: Side) -> f64 {
+        match side {
+            Side::Upper => self.upper.guard,
+            Side::Lower => self.lower.guard,
+        }
+    }
+
     /// Distance that the stepwise braking policy travels from `velocity` [rad or m], ≥ 0, in closed form.
     ///
     /// Each period takes as much speed away as one period can. The direction is that of the velocity.
@@ -164,9 +176,9 @@ impl<'a> SafeZone<'a> {
 }
 
 impl Approach<'_> {
-    /// Whether the position is beyond the limit.
+    /// Whether the position is beyond the limit by more than rounding.
     fn is_outside(&self) -> bool {
-        self.position > self.braking.limit
+        self.position > self.braking.limit + self.braking.rounding
     }
 
     /// Whether braking at once, from inside, overruns the limit by more than rounding.
@@ -202,8 +214,9 @@ fn towards_zero(velocity: f64, reachable: Interval) -> f64 {
 fn check_promises(planner: &Planner, table: &BrakingTable<'_>, side: Side) -> Result<(), ZoneError> {
     let braking = Braking::new(planner, side);
     let spacing = braking.step / f64::from(table.subdivisions());
-    for knot in table.knots(side) {
-        let needed = braking.distance(planner, knot.velocity);
+    let lift = braking.kink_depth(planner, spacing);
+    for knot in &table.knots(side)[1..] {
+        let needed = braking.distance(planner, knot.velocity) + lift;
         if knot.distance < needed * (1.0 - 1e-12) {
             return Err(ZoneError::Unsafe { side, velocity: knot.velocity, distance: knot.distance, needed });
         }
