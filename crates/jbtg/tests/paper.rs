@@ -34,8 +34,8 @@ fn unequal_planner(
         acceleration,
         jerk,
     };
-    let limits = Limits::try_from(limits).unwrap();
-    Planner::try_from(PlannerSpec { limits, shape, timing, period }).unwrap()
+    let limits = Limits::try_from(limits).expect("limits around zero");
+    Planner::try_from(PlannerSpec { limits, shape, timing, period }).expect("a period of many ramps")
 }
 
 #[track_caller]
@@ -66,7 +66,7 @@ fn solve_eqmat(dt: f64, d: f64, (v1, a1): (f64, f64), (v2, a2): (f64, f64)) -> S
         0.0, 2.0, 6.0, 12.0, 20.0,
     ]);
     let right = SVector::<f64, 5>::new(d, v1 * dt, a1 * dt * dt, v2 * dt, a2 * dt * dt);
-    matrix.lu().solve(&right).unwrap()
+    matrix.lu().solve(&right).expect("a regular matrix")
 }
 
 #[test]

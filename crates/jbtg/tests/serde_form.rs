@@ -14,7 +14,7 @@ proptest! {
 
 #[track_caller]
 fn check_refused(text: &str, reason: &str) {
-    let error = ron::from_str::<Limits>(text).unwrap_err().to_string();
+    let error = ron::from_str::<Limits>(text).expect_err("bad limits").to_string();
     assert!(error.contains(reason), "expected {reason:?} in {error:?}");
 }
 

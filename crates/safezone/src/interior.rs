@@ -24,7 +24,9 @@ impl Approach<'_> {
             return lowest;
         }
         let stop = self.position + self.braking.distance(self.planner, self.velocity);
-        let allowed = kept.max(stop + 1e-13 * braking.width);
+        // From outside the way back must not wait for the shape's overshoot to fit.
+        let overshoot = if self.is_outside() { braking.reverse * braking.step } else { 0.0 };
+        let allowed = kept.max(stop + overshoot.max(1e-13 * braking.width));
         if braking.stretched || self.velocity <= 0.0 {
             let anchor = self.brake.min(self.velocity);
             return lowest.max(anchor - (allowed - stop) / braking.reverse);

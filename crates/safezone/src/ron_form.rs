@@ -52,8 +52,9 @@ impl BrakingTable<'static> {
         if file.schema != SCHEMA {
             return Err(ParseError::Schema { found: file.schema });
         }
+        let is_hash = file.hash.len() == 16 && file.hash.bytes().all(|digit| digit.is_ascii_hexdigit());
         let stated = match u64::from_str_radix(&file.hash, 16) {
-            Ok(hash) if file.hash.len() == 16 => hash,
+            Ok(hash) if is_hash => hash,
             _ => return Err(ParseError::Hash { found: file.hash }),
         };
         let File { built_from, subdivisions, upper, lower, .. } = file;

@@ -37,6 +37,8 @@ pub(crate) struct Braking {
     pub(crate) width: f64,
     /// What rounding may add over a whole braking manoeuvre [rad or m].
     pub(crate) rounding: f64,
+    /// Excess over the limit that counts as rounding [rad or m].
+    pub(crate) tolerance: f64,
     /// Distance that a step by choice keeps from the limit [rad or m]; braking may use it up.
     pub(crate) guard: f64,
     /// Whether a larger velocity change lies pointwise beyond a smaller one, so that interiors need no check.
@@ -60,8 +62,9 @@ impl Braking {
         let (step, period) = (authority.velocity_change, planner.period());
         let width = position.width();
         let scale = position.min.abs().max(position.max.abs()).max(width);
-        let steps = (velocity / step).min(sqrt(2.0 * width / (step * period))) + 8.0;
-        let rounding = 8.0 * f64::EPSILON * steps * scale;
+        // Half an ulp per step of a braking manoeuvre, and the roundings of one range.
+        let steps = (velocity / step).min(sqrt(2.0 * width / (step * period)));
+        let rounding = f64::EPSILON * (steps + 16.0) * scale;
         let reverse = authority.reverse_travel;
         let smooth = planner.spec().shape == Shape::Smoothstep;
         let stretched = planner.spec().timing == Timing::Stretched;
@@ -76,6 +79,7 @@ impl Braking {
             velocity,
             width,
             rounding,
+            tolerance: rounding.min(0.5e-12 * width),
             guard: rounding + 2.0 * reverse * step,
             interior_is_free: smooth && stretched,
             stretched,

@@ -81,7 +81,8 @@ impl<'a> SafeZone<'a> {
     /// Distance that a chosen velocity keeps from the limit at `side` when it is braked from [rad or m]: what rounding
     /// may add on the way, and the overshoot of the ramp's shape.
     ///
-    /// A start nearer to the limit than this is as safe, but for that rounding.
+    /// From a start that stops nearer to the limit than this the limit is kept but for that rounding;
+    /// [`SafeRange::status`] tells once that reaches half of 1e-12 of the interval's width.
     #[must_use]
     pub const fn guard(&self, side: Side) -> f64 {
         match side {
@@ -177,14 +178,14 @@ impl<'a> SafeZone<'a> {
 
 impl Approach<'_> {
     /// Whether the position is beyond the limit by more than rounding.
-    fn is_outside(&self) -> bool {
-        self.position > self.braking.limit + self.braking.rounding
+    pub(crate) fn is_outside(&self) -> bool {
+        self.position > self.braking.limit + self.braking.tolerance
     }
 
     /// Whether braking at once, from inside, overruns the limit by more than rounding.
     fn cannot_stop(&self) -> bool {
         let travel = self.braking.distance(self.planner, self.velocity);
-        self.velocity > 0.0 && self.position + travel > self.braking.limit + self.braking.rounding
+        self.velocity > 0.0 && self.position + travel > self.braking.limit + self.braking.tolerance
     }
 
     /// Greatest velocity from beyond the limit that still leads back: braking while it moves out, then half of what

@@ -56,7 +56,7 @@ impl Adversary {
         Request::Action(match self {
             Self::AlwaysMax => 1.0,
             Self::AlwaysMin => -1.0,
-            Self::Alternating if step % 2 == 0 => 1.0,
+            Self::Alternating if step.is_multiple_of(2) => 1.0,
             Self::Alternating => -1.0,
             Self::Random => 2.0 * noise.unit() - 1.0,
             Self::BangBang if noise.unit() < 0.05 || previous == 0.0 => noise.sign(),

@@ -1,0 +1,131 @@
+//! States that no step of ours leads to: outside the limits, too fast, not finite.
+
+use jbtg::strategies::planners;
+use jbtg::{Direction, Planner};
+use proptest::num::f64::ANY;
+use proptest::prelude::*;
+use safezone::{FailSafeReason, RangeStatus, Request, SafeZone, Source};
+
+use crate::adversary::{adversaries, run, safe_state};
+
+fn least_change(planner: &Planner) -> f64 {
+    let [up, down] =
+        [Direction::Increasing, Direction::Decreasing].map(|d| planner.authority(d).velocity_change);
+    up.min(down)
+}
+
+fn actions() -> impl Strategy<Value = f64> {
+    prop_oneof![Just(-1.0), Just(1.0), -1.0..=1.0]
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig { max_global_rejects: u32::MAX, ..ProptestConfig::with_cases(5000) })]
+
+    #[test]
+    fn every_bit_pattern_has_a_range(planner in planners(), position in ANY, velocity in ANY, action in ANY) {
+        let Ok(zone) = SafeZone::closed_form(planner) else { return Ok(()) };
+        let command = zone.command(position, velocity, action);
+        let range = command.range;
+        prop_assert!(range.min <= range.brake && range.brake <= range.max, "{range:?}");
+        prop_assert!(range.contains(command.velocity), "{command:?}");
+        let finite = position.is_finite() && velocity.is_finite();
+        prop_assert_eq!(range.status == RangeStatus::Unknown, !finite);
+        if finite {
+            prop_assert!(zone.planner().ramp(position, velocity, command.velocity).is_ok(), "{command:?}");
+        } else {
+            prop_assert_eq!(command.source, Source::FailSafe(FailSafeReason::UnknownState));
+        }
+    }
+
+    /// The way back: it goes no further out than braking must, whatever the actions.
+    #[test]
+    fn a_start_outside_comes_back_and_stays(
+        planner in planners(),
+        (share, outside, speed) in (0.0..=1.0, 0.0..=1.0, -1.0..=1.0),
+        upper in any::<bool>(),
+        action in actions(),
+        adversary in (adversaries(), any::<u64>()),
+    ) {
+        let Ok(zone) = SafeZone::closed_form(planner) else { return Ok(()) };
+        let (change, limits) = (least_change(&planner), planner.limits().position());
+        let slowest = planner.velocity().max.min(-planner.velocity().min);
+        let travel = change.min(slowest) * planner.period();
+        // Room enough to stop before the other limit.
+        prop_assume!(limits.width() > 140.0 * travel);
+        let mut velocity = speed * slowest.min(10.0 * change);
+        let distance = outside * 10.0 * travel + share * 1e-3 * travel;
+        let mut position = if upper { limits.max + distance } else { limits.min - distance };
+        // At most 10 + 55 such travels away, and at least half a one in every period.
+        let farthest = distance + if (velocity > 0.0) == upper { zone.stopping_distance(velocity) } else { 0.0 };
+        for _ in 0..150 {
+            let command = zone.command(position, velocity, action);
+            if command.range.status == RangeStatus::Safe {
+                break;
+            }
+            let step = planner.ramp(position, velocity, command.velocity)?;
+            let extrema = step.extrema().position;
+            let beyond = (extrema.max - limits.max).max(limits.min - extrema.min);
+            prop_assert!(
+                beyond <= farthest * (1.0 + 1e-9) + zone.guard(safezone::Side::Upper) + zone.guard(safezone::Side::Lower),
+                "{beyond:e} beyond, {farthest:e} is inevitable: {command:?}"
+            );
+            (position, velocity) = (step.end().position, step.end().velocity);
+        }
+        let range = zone.range(position, velocity);
+        prop_assert_eq!(range.status, RangeStatus::Safe, "at {:e} with {:e}", position, velocity);
+        let result = run(&zone, (position, velocity), adversary, 50);
+        prop_assert!(result.is_ok(), "{}", result.unwrap_err());
+    }
+
+    #[test]
+    fn an_impossible_velocity_falls_in_every_period_until_it_is_possible(
+        planner in planners(),
+        (share, excess) in (0.0..=1.0, 1e-3..5.0),
+        upward in any::<bool>(),
+        action in actions(),
+    ) {
+        let Ok(zone) = SafeZone::closed_form(planner) else { return Ok(()) };
+        let bounds = planner.limits().velocity();
+        let change = least_change(&planner);
+        let mut velocity = if upward { bounds.max + excess * change } else { bounds.min - excess * change };
+        let limits = planner.limits().position();
+        let mut position = limits.min + share * limits.width();
+        prop_assert_ne!(zone.range(position, velocity).status, RangeStatus::Safe);
+        for _ in 0..100 {
+            if planner.velocity().contains(velocity) {
+                return Ok(());
+            }
+            let next = zone.command(position, velocity, action).velocity;
+            let possible = planner.velocity().contains(next);
+            prop_assert!(possible || next.abs() < velocity.abs(), "{velocity:e} to {next:e}");
+            let step = planner.ramp(position, velocity, next)?;
+            (position, velocity) = (step.end().position, step.end().velocity);
+        }
+        prop_assert!(false, "still {velocity:e} for {bounds:?}");
+    }
+
+    #[test]
+    fn the_fail_safe_brings_the_joint_to_rest_inside(
+        planner in planners(),
+        start in (0.0..=1.0, 0.0..=1.0),
+        request in prop::sample::select(vec![
+            Request::Missing, Request::Late, Request::Action(f64::NAN), Request::Action(f64::INFINITY),
+        ]),
+    ) {
+        let Ok(zone) = SafeZone::closed_form(planner) else { return Ok(()) };
+        let (mut position, mut velocity) = safe_state(&zone, start);
+        let steps = velocity.abs() / least_change(&planner);
+        prop_assume!(steps < 5000.0);
+        let stop = position + velocity.signum() * zone.stopping_distance(velocity);
+        for _ in 0..=steps as usize + 1 {
+            let command = zone.command(position, velocity, request);
+            prop_assert!(matches!(command.source, Source::FailSafe(_)));
+            prop_assert!(command.velocity.abs() <= velocity.abs() && command.velocity * velocity >= 0.0);
+            let step = planner.ramp(position, velocity, command.velocity)?;
+            (position, velocity) = (step.end().position, step.end().velocity);
+        }
+        prop_assert_eq!(velocity, 0.0);
+        let guard = zone.guard(safezone::Side::Upper).max(zone.guard(safezone::Side::Lower));
+        prop_assert!((position - stop).abs() <= guard, "{position:e}, {stop:e} was foretold");
+    }
+}
