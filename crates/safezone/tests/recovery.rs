@@ -6,7 +6,7 @@ use proptest::num::f64::ANY;
 use proptest::prelude::*;
 use safezone::{FailSafeReason, RangeStatus, Request, SafeZone, Source};
 
-use crate::adversary::{adversaries, run, safe_state};
+use crate::adversary::safe_state;
 
 fn least_change(planner: &Planner) -> f64 {
     let [up, down] =
@@ -35,46 +35,6 @@ proptest! {
         } else {
             prop_assert_eq!(command.source, Source::FailSafe(FailSafeReason::UnknownState));
         }
-    }
-
-    /// The way back: it goes no further out than braking must, whatever the actions.
-    #[test]
-    fn a_start_outside_comes_back_and_stays(
-        planner in planners(),
-        (share, outside, speed) in (0.0..=1.0, 0.0..=1.0, -1.0..=1.0),
-        upper in any::<bool>(),
-        action in actions(),
-        adversary in (adversaries(), any::<u64>()),
-    ) {
-        let Ok(zone) = SafeZone::closed_form(planner) else { return Ok(()) };
-        let (change, limits) = (least_change(&planner), planner.limits().position());
-        let slowest = planner.velocity().max.min(-planner.velocity().min);
-        let travel = change.min(slowest) * planner.period();
-        // Room enough to stop before the other limit.
-        prop_assume!(limits.width() > 140.0 * travel);
-        let mut velocity = speed * slowest.min(10.0 * change);
-        let distance = outside * 10.0 * travel + share * 1e-3 * travel;
-        let mut position = if upper { limits.max + distance } else { limits.min - distance };
-        // At most 10 + 55 such travels away, and at least half a one in every period.
-        let farthest = distance + if (velocity > 0.0) == upper { zone.stopping_distance(velocity) } else { 0.0 };
-        for _ in 0..150 {
-            let command = zone.command(position, velocity, action);
-            if command.range.status == RangeStatus::Safe {
-                break;
-            }
-            let step = planner.ramp(position, velocity, command.velocity)?;
-            let extrema = step.extrema().position;
-            let beyond = (extrema.max - limits.max).max(limits.min - extrema.min);
-            prop_assert!(
-                beyond <= farthest * (1.0 + 1e-9) + zone.guard(safezone::Side::Upper) + zone.guard(safezone::Side::Lower),
-                "{beyond:e} beyond, {farthest:e} is inevitable: {command:?}"
-            );
-            (position, velocity) = (step.end().position, step.end().velocity);
-        }
-        let range = zone.range(position, velocity);
-        prop_assert_eq!(range.status, RangeStatus::Safe, "at {:e} with {:e}", position, velocity);
-        let result = run(&zone, (position, velocity), adversary, 50);
-        prop_assert!(result.is_ok(), "{}", result.unwrap_err());
     }
 
     #[test]
