@@ -4,7 +4,7 @@
 //! - `std` (default): square roots from the standard library.
 //! - `libm`: square roots from `libm`, for `no_std` targets.
 //! - `serde`: [`Limits`], [`PlannerSpec`], [`State`] and what they hold as serde data.
-//! - `proptest`: [`strategies`] for property tests.
+//! - `proptest`: module `strategies` for property tests.
 //!
 //! The crate never allocates, logs or reads a clock. Units are SI throughout: "rad or m" stands for rad at a
 //! revolute joint and m at a prismatic one. \[P\] is the paper named in `docs/references.md`.

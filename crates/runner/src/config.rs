@@ -55,7 +55,7 @@ pub struct Crane {
     pub plants: PathBuf,
     /// Which entry of `plants` is simulated.
     pub plant: String,
-    /// Mass at the tip [kg], unknown to the controller.
+    /// Mass at the tip \[kg\], unknown to the controller.
     pub payload: f64,
     /// Gains of the adaptive controller.
     pub gains: PathBuf,
@@ -135,7 +135,7 @@ pub struct Task {
     pub moving: Vec<String>,
     /// Positions of the held joints [rad or m], by joint.
     pub held: Vec<(String, f64)>,
-    /// Distance of tip and target at which the target counts as reached [m].
+    /// Distance of tip and target at which the target counts as reached \[m\].
     pub reach_distance: f64,
     /// Tip speed below which the target counts as reached [m/s].
     pub reach_speed: f64,
@@ -298,19 +298,19 @@ impl ConfigSpec {
 }
 
 impl Rates {
-    /// Duration of one tick [s].
+    /// Duration of one tick \[s\].
     #[must_use]
     pub fn tick_period(self) -> f64 {
         1.0 / f64::from(self.integration_hz)
     }
 
-    /// Period of the policy [s].
+    /// Period of the policy \[s\].
     #[must_use]
     pub fn policy_period(self) -> f64 {
         f64::from(self.policy_divider) / f64::from(self.integration_hz)
     }
 
-    /// Period of the controller [s].
+    /// Period of the controller \[s\].
     #[must_use]
     pub fn controller_period(self) -> f64 {
         f64::from(self.controller_divider) / f64::from(self.integration_hz)

@@ -20,7 +20,7 @@ const MAX_DRAWS: u32 = 100_000;
 pub struct Episode {
     /// Position of every joint at the start [rad or m].
     pub start: Vec<f64>,
-    /// Target in the world [m], in the plane that the tip moves in.
+    /// Target in the world \[m\], in the plane that the tip moves in.
     pub target: [f64; 3],
 }
 
@@ -172,7 +172,7 @@ impl Environment {
         scaling.apply(&features, input);
     }
 
-    /// Distance of tip and target [m].
+    /// Distance of tip and target \[m\].
     #[must_use]
     pub fn distance(&self) -> f64 {
         norm(std::array::from_fn(|axis| self.tip.position[axis] - self.target[axis]))

@@ -28,7 +28,7 @@ pub struct Plan {
     pub purpose: Purpose,
 }
 
-/// Mean, median and 95 % quantile of a time [s]; `null` in JSON if nothing was reached.
+/// Mean, median and 95 % quantile of a time \[s\]; `null` in JSON if nothing was reached.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Times {
     /// Arithmetic mean.
@@ -39,7 +39,7 @@ pub struct Times {
     pub p95: Option<f64>,
 }
 
-/// Mean and largest distance [m].
+/// Mean and largest distance \[m\].
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Distances {
     /// Arithmetic mean.
@@ -48,7 +48,7 @@ pub struct Distances {
     pub max: Option<f64>,
 }
 
-/// The largest alone [m].
+/// The largest alone \[m\].
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Largest {
     /// The largest.

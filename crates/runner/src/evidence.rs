@@ -108,7 +108,7 @@ pub struct Evidence {
     pub commands: u64,
     /// Controller commands that saturated.
     pub saturated_commands: u64,
-    /// Largest displacement of the tip by the errors of all held joints together [m].
+    /// Largest displacement of the tip by the errors of all held joints together \[m\].
     pub held_joint_tip_error: f64,
 }
 

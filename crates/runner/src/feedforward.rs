@@ -32,7 +32,7 @@ impl Feedforward {
         &self.effort
     }
 
-    /// Computes the effort for every joint's reference, `ahead` of its sample and held for `period` from then [s].
+    /// Computes the effort for every joint's reference, `ahead` of its sample and held for `period` from then \[s\].
     ///
     /// The acceleration is that of the middle of the period: held, it gives the velocity at the period's end.
     ///

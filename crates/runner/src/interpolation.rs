@@ -24,7 +24,7 @@ impl Interpolation {
         Self { start, cubic: 0.0, quartic: 0.0, quintic: 0.0, period: 1.0 }
     }
 
-    /// Between two samples that are `period` apart [s].
+    /// Between two samples that are `period` apart \[s\].
     pub(crate) fn new(start: State, end: State, period: f64) -> Self {
         // What the parabola of the first sample misses at the second, in position, velocity and acceleration times the
         // powers of the period.

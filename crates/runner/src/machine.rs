@@ -57,7 +57,7 @@ pub struct Machine {
 struct Survey {
     /// Range of the diagonal of M⁻¹, by joint.
     inverse_inertia: Vec<Interval>,
-    /// Range of every boom's angle [rad].
+    /// Range of every boom's angle \[rad\].
     boom_angle: Vec<Interval>,
     /// Largest angular velocity of every boom [rad/s].
     boom_speed: Vec<f64>,

@@ -255,7 +255,7 @@ impl Motion {
         Ok(())
     }
 
-    /// Tip position [m] and velocity [m/s] in the world, and angle [rad] and angular velocity [rad/s] of every boom.
+    /// Tip position \[m\] and velocity [m/s] in the world, and angle \[rad\] and angular velocity [rad/s] of every boom.
     ///
     /// # Errors
     /// A loop does not close here.
@@ -274,7 +274,7 @@ impl Motion {
         Ok((model.tip_pose(&self.data).position, model.tip_velocity(&self.data).linear))
     }
 
-    /// Tip position in the world [m] with every joint at `posture`.
+    /// Tip position in the world \[m\] with every joint at `posture`.
     ///
     /// # Errors
     /// A loop does not close there.

@@ -15,19 +15,19 @@ pub struct Features<'a> {
     pub effort: &'a [f64],
     /// Position of every actuator [rad or m].
     pub position: &'a [f64],
-    /// Angle of every boom in a cylinder loop [rad].
+    /// Angle of every boom in a cylinder loop \[rad\].
     pub boom_angle: &'a [f64],
     /// Velocity of every actuator [rad/s or m/s].
     pub velocity: &'a [f64],
     /// Angular velocity of every boom in a cylinder loop [rad/s].
     pub boom_velocity: &'a [f64],
-    /// Tip position (x, z) [m].
+    /// Tip position (x, z) \[m\].
     pub tip: [f64; 2],
     /// Tip velocity (x, z) [m/s].
     pub tip_velocity: [f64; 2],
-    /// Target relative to the tip (x, z) [m].
+    /// Target relative to the tip (x, z) \[m\].
     pub target_from_tip: [f64; 2],
-    /// Distance of tip and target [m].
+    /// Distance of tip and target \[m\].
     pub distance: f64,
 }
 

@@ -2,7 +2,7 @@
 
 use serde::{Deserialize, Serialize};
 
-/// A point (x, z) of the crane's plane [m].
+/// A point (x, z) of the crane's plane \[m\].
 pub type Point = (f64, f64);
 
 /// A simple polygon in the crane's plane, vertices in order, closed by itself.

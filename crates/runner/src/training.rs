@@ -102,7 +102,7 @@ pub struct Training {
     time: TimeSpent,
 }
 
-/// Where the time of a training went [s]; for people, never part of what a seed determines.
+/// Where the time of a training went \[s\]; for people, never part of what a seed determines.
 #[derive(Clone, Copy, Debug, Default, serde::Serialize)]
 struct TimeSpent {
     environment: f64,

@@ -18,7 +18,7 @@ pub struct ProfileRequest {
     pub v1: f64,
     /// Velocity at the end [rad/s or m/s].
     pub v2: f64,
-    /// Duration [s].
+    /// Duration \[s\].
     pub dt: f64,
     /// Velocity limit [rad/s or m/s].
     pub vmax: f64,

@@ -27,7 +27,7 @@ pub(super) struct EpisodeRecord {
     pub(super) return_: f64,
     /// Steps of the episode.
     pub(super) length: u32,
-    /// Distance of tip and target at its end [m].
+    /// Distance of tip and target at its end \[m\].
     pub(super) tip_error: f64,
     /// Share of successes over the rolling window.
     pub(super) success_rate: f64,
