@@ -120,8 +120,7 @@ mod tests {
 
     #[test]
     fn a_record_is_what_tensorflow_writes() {
-        // tf.summary.create_file_writer writes this for the version event at wall time 0 (checked with
-        // tensorboard 2.19's own loader).
+        // The version event at wall time 0: field 1 as a double, field 3 as a string.
         let mut event = Vec::new();
         put_double(&mut event, 1, 0.0);
         put_bytes(&mut event, 3, b"brain.Event:2");
