@@ -36,6 +36,10 @@ pub struct Authority {
     /// Velocity change of two full ramps without a cruise, dV_min of [P, Eq. (dvmin)] [rad/s or m/s], at most Δ.
     /// With [`Timing::Fastest`] smaller changes have smaller ramps (MAP), larger ones a cruise (MSAP).
     pub ramps_only: f64,
+    /// Duration of the rising ramp of the largest step \[s\].
+    pub ramp_up: f64,
+    /// Duration of the falling ramp of the largest step \[s\].
+    pub ramp_down: f64,
     /// Largest distance per velocity change by which a step first moves against its own direction, or has
     /// overshot before its end \[s\]. 0 for [`Shape::Smoothstep`].
     pub reverse_travel: f64,
@@ -150,6 +154,8 @@ impl Planner {
             velocity_change: pulse.velocity_change,
             share: pulse.share,
             ramps_only: pulse.ramps_only,
+            ramp_up: pulse.ramp_up,
+            ramp_down: pulse.ramp_down,
             reverse_travel: pulse.reverse_travel(self.spec.shape),
         }
     }

@@ -56,6 +56,18 @@ pub(crate) struct ShapeConstants {
 }
 
 impl Shape {
+    /// Coefficients [c₃, c₄, c₅] of the position c₃u³ + c₄u⁴ + c₅u⁵ gained from rest within a ramp with A = T = 1,
+    /// u in [0, 1].
+    ///
+    /// # Examples
+    /// ```
+    /// assert_eq!(jbtg::Shape::Smoothstep.coefficients(), [0.0, 0.25, -0.1]);
+    /// ```
+    #[must_use]
+    pub const fn coefficients(self) -> [f64; 3] {
+        self.constants().position
+    }
+
     pub(crate) const fn constants(self) -> ShapeConstants {
         match self {
             Self::Smoothstep => ShapeConstants {
