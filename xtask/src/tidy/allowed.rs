@@ -32,7 +32,7 @@ pub(super) const ALLOWED: &[Allowed] = &[
         name: "safezone",
         normal: &["jbtg", "thiserror"],
         optional: &["libm", "ron", "serde"],
-        dev: &["jbtg", "proptest", "safezone"],
+        dev: &["allocation-counter", "criterion", "jbtg", "proptest", "safezone"],
         ..NOTHING
     },
     Allowed {

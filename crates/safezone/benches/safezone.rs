@@ -1,0 +1,151 @@
+//! Cost of one joint's safe range and of one table lookup. Targets with the default shape and timing: 40 ns for a range
+//! at worst, 8 ns for a lookup.
+//!
+//! A case with several states goes through them in turn, so that branches are as hard to foresee as in a control loop.
+
+use std::hint::black_box;
+
+use criterion::{Bencher, Criterion, criterion_group, criterion_main};
+use jbtg::{Interval, Limits, Planner, PlannerSpec, Shape, SymmetricLimits, Timing};
+use safezone::{BrakingTable, Request, SafeZone, Side};
+
+const LONG: Interval = Interval::new(0.14, 0.50);
+/// Two braking steps wide, so that both limits are near wherever the joint is.
+const SHORT: Interval = Interval::new(0.14, 0.1435);
+/// States per case.
+const STATES: usize = 1024;
+
+/// The paper's joint with another position interval.
+fn planner(position: Interval, shape: Shape, timing: Timing) -> Planner {
+    let limits = SymmetricLimits { position, velocity: 0.15, acceleration: 1.0, jerk: 100.0 };
+    let limits = Limits::try_from(limits).expect("the paper's limits");
+    Planner::try_from(PlannerSpec { limits, shape, timing, period: 0.05 }).expect("the paper's period")
+}
+
+fn closed_form(position: Interval, shape: Shape, timing: Timing) -> SafeZone<'static> {
+    SafeZone::closed_form(planner(position, shape, timing)).expect("room to move")
+}
+
+fn with_table(position: Interval, shape: Shape, timing: Timing) -> SafeZone<'static> {
+    let planner = planner(position, shape, timing);
+    SafeZone::new(planner, BrakingTable::build(&planner).expect("few knots")).expect("its own table")
+}
+
+/// SplitMix64, uniform in [0, 1).
+fn noise(state: &mut u64) -> f64 {
+    *state = state.wrapping_add(0x9e37_79b9_7f4a_7c15);
+    let mut z = *state;
+    z = (z ^ (z >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
+    z = (z ^ (z >> 27)).wrapping_mul(0x94d0_49bb_1331_11eb);
+    ((z ^ (z >> 31)) >> 11) as f64 / (1_u64 << 53) as f64
+}
+
+/// States that an adversary leads to: full speed one way or the other for a random time, and a random action in every
+/// fourth step.
+fn adversarial(zone: &SafeZone<'_>) -> Vec<(f64, f64)> {
+    let (mut seed, mut action) = (7, 1.0);
+    let limits = zone.planner().limits().position();
+    let (mut position, mut velocity) = (0.5 * (limits.min + limits.max), 0.0);
+    let states = (0..STATES).map(|_| {
+        if noise(&mut seed) < 0.05 {
+            action = -action;
+        }
+        let random = 2.0 * noise(&mut seed) - 1.0;
+        let chosen = if noise(&mut seed) < 0.25 { random } else { action };
+        let command = zone.command(position, velocity, chosen);
+        let step = zone.planner().ramp(position, velocity, command.velocity).expect("a safe velocity");
+        let state = (position, velocity);
+        (position, velocity) = (step.end().position, step.end().velocity);
+        state
+    });
+    states.collect()
+}
+
+/// States on the upper end's very boundary: braking at once stops there.
+fn braking(zone: &SafeZone<'_>) -> Vec<(f64, f64)> {
+    let end = zone.planner().limits().position().max - zone.guard(Side::Upper);
+    let state = |i| {
+        let velocity = 0.15 * f64::from(i) / STATES as f64;
+        (end - zone.stopping_distance(velocity), velocity)
+    };
+    (0..STATES as u32).map(state).collect()
+}
+
+fn time_ranges(b: &mut Bencher<'_>, zone: &SafeZone<'_>, states: &[(f64, f64)]) {
+    let mut states = states.iter().cycle();
+    b.iter(|| {
+        let (position, velocity) = states.next().expect("a cycle");
+        zone.range(black_box(*position), black_box(*velocity))
+    });
+}
+
+fn range(c: &mut Criterion) {
+    use Shape::{SineQuintic, Smoothstep};
+    use Timing::{Fastest, Stretched};
+    let mut group = c.benchmark_group("range");
+    let long = closed_form(LONG, Smoothstep, Stretched);
+    group.bench_function("far", |b| time_ranges(b, &long, &[(0.3, 0.1)]));
+    group.bench_function("near_upper", |b| time_ranges(b, &long, &[(0.497, 0.05)]));
+    let cases = [("closed_form", closed_form as fn(_, _, _) -> _), ("table", with_table)];
+    for (distances, zone) in cases {
+        let short = zone(SHORT, Smoothstep, Stretched);
+        let states = adversarial(&short);
+        group.bench_function(format!("worst/both_limits/{distances}"), |b| time_ranges(b, &short, &states));
+        let long = zone(LONG, Smoothstep, Stretched);
+        let states = braking(&long);
+        group.bench_function(format!("worst/braking/{distances}"), |b| time_ranges(b, &long, &states));
+        for (name, shape, timing) in [
+            ("fastest", Smoothstep, Fastest),
+            ("sine", SineQuintic, Stretched),
+            ("sine_fastest", SineQuintic, Fastest),
+        ] {
+            let (long, short) = (zone(LONG, shape, timing), zone(SHORT, shape, timing));
+            let states = adversarial(&long);
+            group.bench_function(format!("{name}/{distances}"), |b| time_ranges(b, &long, &states));
+            let states = adversarial(&short);
+            group.bench_function(format!("{name}/{distances}/both_limits"), |b| {
+                time_ranges(b, &short, &states);
+            });
+        }
+    }
+    group.finish();
+}
+
+fn command(c: &mut Criterion) {
+    let zone = with_table(LONG, Shape::Smoothstep, Timing::Stretched);
+    let states = adversarial(&zone);
+    let mut group = c.benchmark_group("command");
+    for (name, request) in [("action", Request::Action(0.7)), ("missing", Request::Missing)] {
+        let mut states = states.iter().cycle();
+        group.bench_function(name, |b| {
+            b.iter(|| {
+                let (position, velocity) = states.next().expect("a cycle");
+                zone.command(black_box(*position), black_box(*velocity), black_box(request))
+            });
+        });
+    }
+    group.finish();
+}
+
+fn table(c: &mut Criterion) {
+    let mut group = c.benchmark_group("table");
+    for (name, timing) in [("", Timing::Stretched), ("/fastest", Timing::Fastest)] {
+        let table =
+            BrakingTable::build(&planner(LONG, Shape::Smoothstep, timing)).expect("a table of a few knots");
+        let mut seed = 3;
+        let speeds: Vec<f64> = (0..STATES).map(|_| 0.15 * noise(&mut seed)).collect();
+        let mut next = speeds.iter().cycle();
+        group.bench_function(format!("distance{name}"), |b| {
+            b.iter(|| table.distance(Side::Upper, black_box(*next.next().expect("a cycle"))));
+        });
+        let distances: Vec<f64> = speeds.iter().map(|v| table.distance(Side::Upper, *v)).collect();
+        let mut next = distances.iter().cycle();
+        group.bench_function(format!("max_velocity{name}"), |b| {
+            b.iter(|| table.max_velocity(Side::Upper, black_box(*next.next().expect("a cycle"))));
+        });
+    }
+    group.finish();
+}
+
+criterion_group!(benches, range, command, table);
+criterion_main!(benches);
