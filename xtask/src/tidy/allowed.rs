@@ -64,6 +64,7 @@ pub(super) const ALLOWED: &[Allowed] = &[
         dev: &["burn", "criterion", "mimalloc", "ron"],
         ..NOTHING
     },
+    Allowed { name: "figures", normal: &["thiserror", "tiny-skia"], dev: &["xml-rs"], ..NOTHING },
     Allowed {
         name: "runner",
         normal: &[
@@ -80,7 +81,7 @@ pub(super) const ALLOWED: &[Allowed] = &[
             "tracing",
             "tracing-subscriber",
         ],
-        optional: &["sac-burn", "crc32c", "indicatif", "mimalloc"],
+        optional: &["figures", "sac-burn", "crc32c", "indicatif", "mimalloc"],
         dev: &["tempfile"],
         ..NOTHING
     },
@@ -113,7 +114,8 @@ mod tests {
             ("adaptive-ctrl", vec![]),
             ("hiab-dynamics", vec![]),
             ("sac-burn", vec![]),
-            ("runner", vec!["adaptive-ctrl", "hiab-dynamics", "jbtg", "safezone", "sac-burn"]),
+            ("figures", vec![]),
+            ("runner", vec!["adaptive-ctrl", "figures", "hiab-dynamics", "jbtg", "safezone", "sac-burn"]),
             ("xtask", vec![]),
         ] {
             let allowed = ALLOWED.iter().find(|allowed| allowed.name == name).unwrap();

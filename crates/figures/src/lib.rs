@@ -1,0 +1,44 @@
+//! Pictures of plain data: line charts with bands, steps and limits, heat maps, regions, distributions, postures and
+//! block diagrams, as SVG text and PNG bytes.
+//!
+//! ```text
+//! Chart { title, x: Axis, panels: [Panel { y: Axis, layers: [Layer], limits: [Limit] }] }
+//!    │ draw(): ranges, round ticks, legends above the data
+//!    ▼
+//! Figure ── svg(theme) ──▶ text      light, dark, or what the reader's screen prefers
+//!        └─ png(theme, scale) ──▶ bytes
+//! ```
+//!
+//! The crate knows no robots and no files: numbers go in, text or bytes come out, and the same numbers always give the
+//! same text. Every axis has a label and a unit, or the figure is refused. Series differ in colour (Okabe and Ito), in
+//! dash and in marker, so a figure can be read in grey print and with any colour blindness. Lengths are pixels at scale
+//! 1. [`Chart`] has an example.
+//!
+//! Text is measured and, in a PNG, drawn with outlines of DejaVu Sans that the crate holds; no font need be installed.
+#![forbid(unsafe_code)]
+
+mod axis;
+mod chart;
+mod colour;
+mod distribution;
+mod drawing;
+mod error;
+mod figure;
+mod font;
+mod layer;
+mod legend;
+mod plot;
+mod png;
+mod svg;
+mod ticks;
+
+pub use axis::{Axis, Spacing};
+pub use chart::{Chart, Panel, Proportion};
+pub use colour::{Colour, SvgTheme, Theme};
+pub use distribution::Distribution;
+pub use error::FigureError;
+pub use figure::Figure;
+pub use layer::{
+    Band, Bar, Boxes, Course, Dash, Forbidden, Heat, Histogram, Layer, Limit, Marker, Outline, Region,
+    Series, Style,
+};
