@@ -14,6 +14,7 @@
 #[cfg(not(any(feature = "std", feature = "libm")))]
 compile_error!("jbtg needs a square root: enable the feature `std` or the feature `libm`");
 
+mod detour;
 mod extrema;
 mod interval;
 mod limits;
@@ -27,6 +28,7 @@ mod shape;
 pub mod strategies;
 mod trajectory;
 
+pub use detour::{Detour, DetourCase, PulseKind};
 pub use extrema::Extrema;
 pub use interval::Interval;
 pub use limits::{Limits, LimitsError, LimitsSpec, Quantity, SymmetricLimits};

@@ -1,9 +1,11 @@
 //! Plans one period: from one velocity to another with zero acceleration at both ends.
 
 mod errors;
+mod waypoint;
 
 pub use errors::{PlannerError, RampError};
 
+use crate::detour::DetourLimits;
 use crate::pulse::{Bounds, Direction, Pulse, PulseLimits};
 use crate::shape::ShapeConstants;
 use crate::{Interval, Limits, Shape, Timing, Trajectory};
@@ -50,9 +52,9 @@ pub struct Authority {
 /// Position limits are not its business: `safezone` sees to them.
 ///
 /// A step starts and ends with zero acceleration (and zero jerk, with [`Shape::Smoothstep`]).
-/// Source: [P, Alg. 1], [P, Alg. 2] and cases 1 and 3 of [P, Alg. 3], for both directions and for limits that
-/// differ between them. Cases 2 and 4 detour through a peak velocity for the greatest displacement; a step here
-/// goes from one velocity to the other directly.
+/// Source: [P, Alg. 1], [P, Alg. 2] and [P, Alg. 3], for both directions and for limits that differ between them.
+/// [`Planner::ramp`] goes from one velocity to the other directly, [`Planner::waypoint`] through a peak velocity for
+/// the greatest displacement.
 ///
 /// # Examples
 /// ```
@@ -79,6 +81,7 @@ pub struct Planner {
     increasing: PulseLimits,
     decreasing: PulseLimits,
     shape: ShapeConstants,
+    detours: DetourLimits,
 }
 
 impl TryFrom<PlannerSpec> for Planner {
@@ -110,13 +113,14 @@ impl TryFrom<PlannerSpec> for Planner {
         for pulse in [&increasing, &decreasing] {
             check_authority(pulse, period, speed)?;
         }
+        let detours = DetourLimits::new(up, down, velocity, shape, period);
         let width = velocity.width();
         let margin = increasing.reverse_velocity(shape, width).max(decreasing.reverse_velocity(shape, width));
         let velocity = Interval::new(velocity.min + margin, velocity.max - margin);
         if !(velocity.min < 0.0 && 0.0 < velocity.max) {
             return Err(PlannerError::OutOfScale { name: "velocity margin", value: margin });
         }
-        Ok(Self { spec, velocity, increasing, decreasing, shape: shape.constants() })
+        Ok(Self { spec, velocity, increasing, decreasing, shape: shape.constants(), detours })
     }
 }
 
@@ -237,8 +241,15 @@ impl Planner {
 
     #[inline]
     fn step(&self, position: f64, v1: f64, v2: f64) -> Trajectory {
-        let change = v2 - v1;
-        let pulse = if change > 0.0 {
+        let pulse = self.signed_pulse(v2 - v1);
+        let end = (position + self.displacement(v1, v2), v2);
+        Trajectory::from_pulse(position, v1, (pulse, self.spec.period), end, &self.shape)
+    }
+
+    /// The pulse of a step that changes the velocity by `change`; it rests if that is 0.
+    #[inline]
+    fn signed_pulse(&self, change: f64) -> Pulse {
+        if change > 0.0 {
             self.increasing.pulse(change)
         } else if change < 0.0 {
             let pulse = self.decreasing.pulse(-change);
@@ -246,9 +257,7 @@ impl Planner {
         } else {
             let rest = self.spec.period; // Case 3 of [P, Alg. 3].
             Pulse { acceleration: 0.0, ramp_up: 0.0, cruise: 0.0, ramp_down: 0.0, rest }
-        };
-        let end = (position + self.displacement(v1, v2), v2);
-        Trajectory::from_pulse(position, v1, (pulse, self.spec.period), end, &self.shape)
+        }
     }
 
     const fn pulses(&self, direction: Direction) -> &PulseLimits {

@@ -14,7 +14,7 @@ pub enum Direction {
 }
 
 /// Shortest ramp as a share of the period. Shorter ones gain nothing and overflow the quintic's coefficients.
-const MIN_RAMP_SHARE: f64 = 1e-6;
+pub(crate) const MIN_RAMP_SHARE: f64 = 1e-6;
 
 /// Relative distance kept from the acceleration and jerk bounds, so that rounding never crosses them.
 const GUARD: f64 = 1e-14;
@@ -192,7 +192,7 @@ impl PulseLimits {
 
 impl Pulse {
     /// First moment of the pulse about its start, per acceleration [s²].
-    fn moment(&self, displacement: f64) -> f64 {
+    pub(crate) fn moment(&self, displacement: f64) -> f64 {
         let Self { ramp_up, cruise, ramp_down, .. } = *self;
         (0.5 - displacement) * ramp_up * ramp_up
             + cruise * (ramp_up + 0.5 * cruise)

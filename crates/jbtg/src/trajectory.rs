@@ -68,9 +68,24 @@ impl Trajectory {
         trajectory
     }
 
-    fn push(&mut self, segment: Segment) {
+    /// A trajectory without segments, to be filled by [`push`](Self::push).
+    pub(crate) const fn unfilled(duration: f64, end: State) -> Self {
+        Self { segments: [Segment::EMPTY; MAX_SEGMENTS], count: 0, duration, end }
+    }
+
+    pub(crate) fn push(&mut self, segment: Segment) {
         self.segments[self.count] = segment;
         self.count += 1;
+    }
+
+    /// The same motion in the opposite direction, bit for bit.
+    pub(crate) fn mirrored(mut self) -> Self {
+        for segment in &mut self.segments[..self.count] {
+            segment.coefficients = segment.coefficients.map(|c| 0.0 - c);
+        }
+        let State { position, velocity, .. } = self.end;
+        self.end = State { position: 0.0 - position, velocity: 0.0 - velocity, ..self.end };
+        self
     }
 
     /// State at `time` since the start \[s\].

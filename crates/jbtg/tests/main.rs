@@ -1,7 +1,9 @@
 //! Integration tests: every file in this folder is a module of this one program.
 
+mod optimum;
 mod paper;
 mod properties;
 mod serde_form;
 mod tolerance;
 mod totality;
+mod waypoint;

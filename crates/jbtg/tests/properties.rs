@@ -7,17 +7,17 @@ use proptest::prelude::*;
 use crate::tolerance;
 
 /// Cases per property; `EXTENSIVE=n` multiplies them by n.
-fn cases(plain: u32) -> ProptestConfig {
+pub(crate) fn cases(plain: u32) -> ProptestConfig {
     let factor = std::env::var("EXTENSIVE").ok().and_then(|text| text.parse().ok()).unwrap_or(1);
     ProptestConfig { max_global_rejects: u32::MAX, ..ProptestConfig::with_cases(plain * factor) }
 }
 
 /// Where in an interval: often its very ends, or close to zero change.
-fn shares() -> impl Strategy<Value = f64> {
+pub(crate) fn shares() -> impl Strategy<Value = f64> {
     prop_oneof![1 => Just(0.0), 1 => Just(1.0), 1 => Just(0.5), 5 => 0.0..=1.0]
 }
 
-fn within(interval: Interval, share: f64) -> f64 {
+pub(crate) fn within(interval: Interval, share: f64) -> f64 {
     interval.clamp(interval.min + share * interval.width())
 }
 
@@ -28,7 +28,7 @@ fn pick(planner: &Planner, (position, v1, v2): (f64, f64, f64)) -> (f64, f64, f6
 }
 
 #[track_caller]
-fn check_within(name: &str, found: Interval, limit: Interval) -> Result<(), TestCaseError> {
+pub(crate) fn check_within(name: &str, found: Interval, limit: Interval) -> Result<(), TestCaseError> {
     let excess = (found.max - limit.max).max(limit.min - found.min) / limit.width();
     prop_assert!(
         excess <= tolerance::LIMIT,
@@ -99,7 +99,7 @@ fn check_extrema(step: &Trajectory) -> Result<(), TestCaseError> {
 }
 
 /// Segments follow each other without a gap, from the start to the end state.
-fn check_joints(step: &Trajectory, start: State, shape: Shape) -> Result<(), TestCaseError> {
+pub(crate) fn check_joints(step: &Trajectory, start: State, shape: Shape) -> Result<(), TestCaseError> {
     let segments = step.segments();
     let compared = if shape == Shape::Smoothstep { 4 } else { 3 };
     let scales = segments.iter().map(magnitudes).fold([0.0; 4], larger);
