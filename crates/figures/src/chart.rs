@@ -159,7 +159,9 @@ impl Chart {
 
     fn prepare(&self, index: usize) -> Result<Prepared<'_>, FigureError> {
         let (title, panel) = (&self.title, &self.panels[index]);
-        check_lengths(title, panel)?;
+        for layer in &panel.layers {
+            check_lengths(title, layer, &panel.y)?;
+        }
         let limits = panel.limits.iter().map(|limit| limit.value);
         let y = panel.y.resolve(title, panel.layers.iter().flat_map(Layer::ys).chain(limits), 0.05)?;
         // Bars stand on their axis.
@@ -177,12 +179,16 @@ impl Chart {
             }
         };
         let height = if self.proportion == Proportion::Equal { 400.0 } else { panel.height };
-        let names = legend::entries(&panel.layers, &self.panels[..index]);
+        // A name that an earlier panel has explained already does not come again.
+        let before = self.panels[..index].iter().flat_map(|panel| &panel.layers);
+        let known = legend::entries(before).len();
+        let names =
+            legend::entries(self.panels[..=index].iter().flat_map(|panel| &panel.layers)).split_off(known);
         Ok(Prepared { panel, names, y, ticks: panel.y.ticks(&y, wanted(height, 42.0)), heat })
     }
 }
 
-fn wanted(length: f64, each: f64) -> usize {
+pub(crate) fn wanted(length: f64, each: f64) -> usize {
     (length / each).round().clamp(2.0, 12.0) as usize
 }
 
@@ -201,27 +207,20 @@ fn beside(prepared: &Prepared<'_>) -> f64 {
     }
 }
 
-fn check_lengths(figure: &str, panel: &Panel) -> Result<(), FigureError> {
-    let check = |what, expected: usize, found: usize| {
-        let figure = figure.to_owned();
-        if expected == found { Ok(()) } else { Err(FigureError::Length { figure, what, expected, found }) }
-    };
-    for layer in &panel.layers {
-        match layer {
-            Layer::Heat(heat) => {
-                let cells = heat.x_edges.len().saturating_sub(1) * heat.y_edges.len().saturating_sub(1);
-                check("a heat map", cells, heat.values.len())?;
-            }
-            Layer::Histogram(histogram) => {
-                check("a histogram", histogram.edges.len().saturating_sub(1), histogram.heights.len())?;
-            }
-            Layer::Boxes(boxes) => {
-                check("a row of boxes", panel.y.categories.len(), boxes.distributions.len())?;
-            }
-            _ => {}
+pub(crate) fn check_lengths(figure: &str, layer: &Layer, y: &Axis) -> Result<(), FigureError> {
+    let (what, expected, found) = match layer {
+        Layer::Heat(heat) => {
+            let cells = heat.x_edges.len().saturating_sub(1) * heat.y_edges.len().saturating_sub(1);
+            ("a heat map", cells, heat.values.len())
         }
-    }
-    Ok(())
+        Layer::Histogram(histogram) => {
+            ("a histogram", histogram.edges.len().saturating_sub(1), histogram.heights.len())
+        }
+        Layer::Boxes(boxes) => ("a row of boxes", y.categories.len(), boxes.distributions.len()),
+        _ => return Ok(()),
+    };
+    let figure = figure.to_owned();
+    if expected == found { Ok(()) } else { Err(FigureError::Length { figure, what, expected, found }) }
 }
 
 impl Prepared<'_> {
@@ -246,7 +245,7 @@ impl Prepared<'_> {
     }
 }
 
-fn grid(drawing: &mut Drawing, frame: &Frame, x_ticks: &Ticks, y_ticks: &Ticks, has_rows: bool) {
+pub(crate) fn grid(drawing: &mut Drawing, frame: &Frame, x_ticks: &Ticks, y_ticks: &Ticks, has_rows: bool) {
     let line = Stroke::solid(Colour::Grid, 1.0);
     let Rect { left, top, right, bottom } = frame.rect;
     for (value, _) in &x_ticks.marks {

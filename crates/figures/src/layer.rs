@@ -176,24 +176,20 @@ pub struct Heat {
     pub values: Vec<f64>,
 }
 
-/// Lines and polygons of a thing that is drawn as it looks.
+/// A thing drawn as it looks, part by part.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Outline {
-    /// Lines through points (x, y), each with its width in units of the axes, its colour and its opacity.
-    pub bars: Vec<Bar>,
+    /// Later parts cover earlier ones.
+    pub parts: Vec<Part>,
 }
 
-/// A straight or bent bar with round ends.
+/// A filled polygon without a name.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Bar {
-    /// Points (x, y) of its middle line.
-    pub points: Vec<[f64; 2]>,
-    /// Width in units of the y axis.
-    pub width: f64,
-    /// Colour.
+pub struct Part {
+    /// Vertices (x, y) in order.
+    pub vertices: Vec<[f64; 2]>,
+    /// Colour of area and edge.
     pub colour: Colour,
-    /// Opacity in [0, 1].
-    pub opacity: f64,
 }
 
 /// One layer of a panel; later ones cover earlier ones.
@@ -259,7 +255,7 @@ impl Layer {
             }
             Self::Heat(heat) => Box::new(heat.x_edges.iter().copied()),
             Self::Outline(outline) => {
-                Box::new(outline.bars.iter().flat_map(|bar| visible(&bar.points)).map(|[x, _]| x))
+                Box::new(outline.parts.iter().flat_map(|part| visible(&part.vertices)).map(|[x, _]| x))
             }
         }
     }
@@ -277,7 +273,7 @@ impl Layer {
             Self::Boxes(_) => Box::new(std::iter::empty()),
             Self::Heat(heat) => Box::new(heat.y_edges.iter().copied()),
             Self::Outline(outline) => {
-                Box::new(outline.bars.iter().flat_map(|bar| visible(&bar.points)).map(|[_, y]| y))
+                Box::new(outline.parts.iter().flat_map(|part| visible(&part.vertices)).map(|[_, y]| y))
             }
         }
     }

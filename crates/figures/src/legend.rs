@@ -1,6 +1,5 @@
 //! Names of the layers, in lines above a panel, where they hide no data.
 
-use crate::chart::Panel;
 use crate::colour::Colour;
 use crate::drawing::{Anchor, Drawing, Item, Paint, Rect, Stroke, solid, text_width};
 use crate::layer::{Course, Layer};
@@ -18,11 +17,15 @@ const SAMPLE: f64 = 26.0;
 /// Room between two names \[px\].
 const GAP: f64 = 18.0;
 
-/// The layers that a panel's legend names: those that have a name which no panel before gives to the same look.
-pub(crate) fn entries<'a>(layers: &'a [Layer], before: &'a [Panel]) -> Vec<&'a Layer> {
-    let is_known =
-        |layer: &Layer| before.iter().flat_map(|panel| &panel.layers).any(|other| same(layer, other));
-    layers.iter().filter(|layer| !layer.name().is_empty() && !is_known(layer)).collect()
+/// The layers that a legend names: those that have a name which no layer before gives to the same look.
+pub(crate) fn entries<'a>(layers: impl IntoIterator<Item = &'a Layer>) -> Vec<&'a Layer> {
+    let mut entries: Vec<&Layer> = Vec::new();
+    for layer in layers {
+        if !layer.name().is_empty() && !entries.iter().any(|known| same(known, layer)) {
+            entries.push(layer);
+        }
+    }
+    entries
 }
 
 /// True if the legend would say the same of both.

@@ -20,6 +20,7 @@
 mod axis;
 mod chart;
 mod colour;
+mod diagram;
 mod distribution;
 mod drawing;
 mod error;
@@ -29,16 +30,19 @@ mod layer;
 mod legend;
 mod plot;
 mod png;
+mod strip;
 mod svg;
 mod ticks;
 
 pub use axis::{Axis, Spacing};
 pub use chart::{Chart, Panel, Proportion};
 pub use colour::{Colour, SvgTheme, Theme};
+pub use diagram::{Arrow, Diagram, Node};
 pub use distribution::Distribution;
 pub use error::FigureError;
 pub use figure::Figure;
 pub use layer::{
-    Band, Bar, Boxes, Course, Dash, Forbidden, Heat, Histogram, Layer, Limit, Marker, Outline, Region,
+    Band, Boxes, Course, Dash, Forbidden, Heat, Histogram, Layer, Limit, Marker, Outline, Part, Region,
     Series, Style,
 };
+pub use strip::{Picture, Strip};

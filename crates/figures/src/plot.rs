@@ -4,7 +4,7 @@ use crate::axis::Span;
 use crate::colour::Colour;
 use crate::drawing::{Drawing, Item, Paint, Point, Rect, Stroke, solid};
 use crate::layer::{
-    Band, Boxes, Course, Dash, Heat, Histogram, Layer, Limit, Marker, Outline, Region, Series, Style,
+    Band, Boxes, Course, Heat, Histogram, Layer, Limit, Marker, Outline, Region, Series, Style,
 };
 
 /// Pixels that are used for a point or line beyond the rectangle; far enough not to be seen.
@@ -305,29 +305,13 @@ fn shade(share: f64) -> Option<usize> {
 }
 
 fn outline(drawing: &mut Drawing, frame: &Frame, outline: &Outline) {
-    let scale = frame.rect.height() / (frame.y.max - frame.y.min);
     let clip = Some(frame.rect);
-    for bar in &outline.bars {
-        let width = (bar.width * scale).max(0.8);
-        let stroke = Stroke {
-            paint: Paint { colour: bar.colour, opacity: bar.opacity },
-            width,
-            dashes: Dash::Solid.lengths(),
-        };
-        for run in frame.runs(bar.points.iter().copied()) {
-            if run.len() > 1 {
-                drawing.line(run, stroke, clip);
-            } else {
-                let fill = Some(stroke.paint);
-                drawing.items.push(Item::Disc {
-                    centre: run[0],
-                    radius: width / 2.0,
-                    fill,
-                    stroke: None,
-                    clip,
-                });
-            }
-        }
+    for part in &outline.parts {
+        let vertices: Vec<Point> = part.vertices.iter().filter_map(|&point| frame.place(point)).collect();
+        // Parts lie in front of each other, and show where they do.
+        drawing.polygon(vertices.clone(), Some(Paint { colour: Colour::Paper, opacity: 0.6 }), None, clip);
+        let stroke = Some(Stroke::solid(part.colour, 1.1));
+        drawing.polygon(vertices, Some(Paint { colour: part.colour, opacity: 0.45 }), stroke, clip);
     }
 }
 

@@ -241,6 +241,32 @@ fn lists_that_do_not_fit_together_are_refused() {
 }
 
 #[test]
+fn a_diagram_that_names_a_box_that_is_not_there_is_refused() {
+    let mut diagram = support::diagram();
+    diagram.arrows[0].to = 4;
+    assert!(matches!(diagram.draw(), Err(FigureError::Length { expected: 5, found: 4, .. })));
+    diagram.arrows.clear();
+    diagram.nodes.clear();
+    assert!(matches!(diagram.draw(), Err(FigureError::NoData { .. })));
+}
+
+#[test]
+fn a_diagram_shows_every_name_and_label() {
+    let texts = texts(&support::diagram().draw().unwrap().svg(SvgTheme::Reader));
+    for text in ["Policy", "20 Hz", "a ∈ [−1, 1]³", "state", "reset"] {
+        assert!(texts.iter().any(|found| found == text), "no '{text}'");
+    }
+}
+
+#[test]
+fn a_strip_names_its_axes_and_layers_once_and_every_picture() {
+    let texts = texts(&support::strip().draw().unwrap().svg(SvgTheme::Reader));
+    let count = |text: &str| texts.iter().filter(|found| *found == text).count();
+    assert_eq!((count("Height [m]"), count("target"), count("t = 1.5 s")), (1, 1, 1));
+    assert_eq!(count("Reach [m]"), 5, "under each picture of the last row");
+}
+
+#[test]
 fn samples_can_be_looked_at() {
     let Some(folder) = std::env::var_os("FIGURES_TO") else { return };
     let folder = std::path::PathBuf::from(folder);

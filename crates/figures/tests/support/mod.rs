@@ -2,8 +2,9 @@
 #![allow(dead_code, unreachable_pub, reason = "every test file takes what it needs")]
 
 use figures::{
-    Axis, Band, Boxes, Chart, Colour, Course, Dash, Distribution, Figure, FigureError, Heat, Histogram,
-    Layer, Limit, Panel, Proportion, Region, Series, Spacing, Style,
+    Arrow, Axis, Band, Boxes, Chart, Colour, Course, Dash, Diagram, Distribution, Figure, FigureError, Heat,
+    Histogram, Layer, Limit, Node, Outline, Panel, Part, Picture, Proportion, Region, Series, Spacing, Strip,
+    Style,
 };
 
 /// Name and figure of every sample.
@@ -15,6 +16,8 @@ pub fn samples() -> Vec<(&'static str, Result<Figure, FigureError>)> {
         ("heat", heat().draw()),
         ("boxes", boxes().draw()),
         ("histogram", histogram().draw()),
+        ("strip", strip().draw()),
+        ("diagram", diagram().draw()),
     ]
 }
 
@@ -183,5 +186,67 @@ pub fn histogram() -> Chart {
             "Tracking errors",
             Axis { spacing: Spacing::Logarithmic, ..Axis::new("Position error", "m") },
         )
+    }
+}
+
+pub fn strip() -> Strip {
+    let arm = |angle: f64| {
+        let (sin, cos) = angle.sin_cos();
+        let bar = |from: f64, to: f64, half: f64, colour| Part {
+            vertices: [[from, half], [to, half], [to, -half], [from, -half]]
+                .map(|[u, v]| [u * cos - v * sin, 1.0 + u * sin + v * cos])
+                .to_vec(),
+            colour,
+        };
+        Layer::Outline(Outline {
+            parts: vec![bar(0.0, 1.2, 0.1, Colour::Blue), bar(0.9, 2.0, 0.05, Colour::Orange)],
+        })
+    };
+    let picture = |k: u32| Picture {
+        caption: format!("t = {:.1} s", 0.5 * f64::from(k)),
+        layers: vec![
+            arm(0.25 * f64::from(k) - 0.3),
+            Layer::Series(Series {
+                name: "target".into(),
+                points: vec![[1.1, 2.2]],
+                course: Course::Points,
+                style: Style::nth(4),
+            }),
+        ],
+    };
+    Strip {
+        title: "An arm at several times".into(),
+        x: Axis::new("Reach", "m"),
+        y: Axis::new("Height", "m"),
+        pictures: (0..5).map(picture).collect(),
+        columns: 5,
+        width: 900.0,
+    }
+}
+
+pub fn diagram() -> Diagram {
+    let node = |column, row, name: &str, line: &str, colour| Node {
+        column,
+        row,
+        name: name.into(),
+        lines: vec![line.into()],
+        colour,
+    };
+    let arrow = |from, to, label: &str, shift| Arrow { from, to, lines: vec![label.into()], shift };
+    Diagram {
+        title: "A loop".into(),
+        nodes: vec![
+            node(0, 0, "Policy", "20 Hz", Colour::Purple),
+            node(1, 0, "Safe range", "never empty", Colour::Green),
+            node(1, 1, "Plant", "2 kHz", Colour::Blue),
+            node(0, 1, "Observation", "32 numbers", Colour::Grey),
+        ],
+        arrows: vec![
+            arrow(0, 1, "a ∈ [−1, 1]³", 0.0),
+            arrow(1, 2, "velocity", 0.0),
+            arrow(2, 3, "state", -10.0),
+            arrow(3, 2, "reset", 10.0),
+            arrow(3, 0, "s", 0.0),
+        ],
     }
 }
