@@ -105,6 +105,18 @@ pub(crate) const COMMANDS: &[Command] = &[
         example: "cargo xtask zone --joint lift_joint --position 0.49 --velocity 0.05",
     },
     Command {
+        name: "soak",
+        summary: "Run adversaries against the safe ranges and count broken limits",
+        flags: &[
+            required("steps", "N", "number of steps, exactly"),
+            required("seed", "S", "seed of everything random"),
+            optional("json", "FILE", "write the result there as JSON as well"),
+            optional("threads", "N", "number of threads, instead of all"),
+            optional("case", "K", "replay this case alone and print what happens in it"),
+        ],
+        example: "cargo xtask soak --steps 10000000 --seed 1 --json soak.json",
+    },
+    Command {
         name: "dynamics",
         summary: "Compute the dynamics of given states and print them as JSON",
         flags: &[required("states", "FILE", "states, in the form of the golden states.json")],
@@ -153,6 +165,7 @@ pub(crate) enum Invocation {
     Eval(Eval),
     Profile(Profile),
     Zone(Zone),
+    Soak(Soak),
     Dynamics(Dynamics),
     Tidy,
 }
@@ -214,6 +227,15 @@ pub(crate) struct Zone {
 }
 
 #[derive(Debug, PartialEq)]
+pub(crate) struct Soak {
+    pub(crate) steps: u64,
+    pub(crate) seed: u64,
+    pub(crate) json: Option<PathBuf>,
+    pub(crate) threads: Option<u64>,
+    pub(crate) case: Option<u64>,
+}
+
+#[derive(Debug, PartialEq)]
 pub(crate) struct Dynamics {
     pub(crate) states: PathBuf,
 }
@@ -272,6 +294,13 @@ impl Invocation {
                 velocity: parsed.number("velocity")?,
                 config: parsed.existing_file("config")?,
                 json: parsed.switch("json"),
+            }),
+            "soak" => Self::Soak(Soak {
+                steps: parsed.given("steps", parsed.integer("steps", 1)?)?,
+                seed: parsed.given("seed", parsed.integer("seed", 0)?)?,
+                json: parsed.file("json")?,
+                threads: parsed.integer("threads", 1)?,
+                case: parsed.integer("case", 0)?,
             }),
             "dynamics" => {
                 Self::Dynamics(Dynamics { states: parsed.given("states", parsed.existing_file("states")?)? })

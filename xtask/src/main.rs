@@ -12,6 +12,7 @@ mod flags;
 mod help;
 mod profile;
 mod runner;
+mod soak;
 mod suggest;
 mod tables;
 mod tidy;
@@ -51,6 +52,7 @@ fn dispatch(invocation: Invocation) -> anyhow::Result<ExitCode> {
         Invocation::Eval(flags) => flags.run(),
         Invocation::Profile(flags) => flags.run(),
         Invocation::Zone(flags) => flags.run(),
+        Invocation::Soak(flags) => flags.run(),
         Invocation::Dynamics(flags) => flags.run(),
         Invocation::Tidy => tidy::run(),
     }

@@ -1,9 +1,10 @@
-//! What the commands about motion alone compute: braking tables, profiles, safe ranges, dynamics.
+//! What the commands about motion alone compute: braking tables, profiles, safe ranges, adversarial runs, dynamics.
 //!
 //! Each function returns the text that its command prints.
 
 mod dynamics;
 mod profile;
+pub mod soak;
 mod tables;
 mod zone;
 

@@ -21,6 +21,7 @@ fn cargo_line(line: &str) -> String {
         Invocation::Eval(flags) => flags.call(),
         Invocation::Profile(flags) => flags.call(),
         Invocation::Zone(flags) => flags.call(),
+        Invocation::Soak(flags) => flags.call(),
         Invocation::Dynamics(flags) => flags.call(),
         Invocation::Help(_) | Invocation::Tidy => panic!("{line} runs no child"),
     };
@@ -55,6 +56,10 @@ fn flags_reach_the_child_in_one_form() {
         (
             "zone --json --joint lift --position 0.3 --velocity -0.05",
             format!("{KINEMATICS} zone --joint lift_joint --position 0.3 --velocity -0.05 --json"),
+        ),
+        (
+            "soak --seed 0 --steps=10000000 --case 3 --threads 2",
+            format!("{KINEMATICS} soak --steps 10000000 --seed 0 --threads 2 --case 3"),
         ),
     ] {
         assert_eq!(cargo_line(line), child);
@@ -116,6 +121,7 @@ fn what_is_missing_is_named() {
     assert!(refusal("train").contains("--stage STAGE (purple, yellow, orange) or --all"));
     assert!(refusal("train --stage purple --all").contains("not both"));
     assert!(refusal("eval --stage purple").contains("needs --run NAME"));
+    assert!(refusal("soak --json x").contains("needs --steps N, --seed S"));
     assert!(refusal("train --stage --run x").contains("`--stage` needs a value: --stage STAGE"));
     assert!(refusal("train --all --run").contains("needs a value"));
 }
@@ -127,6 +133,7 @@ fn bad_values_are_refused() {
         ("zone --joint lift --position 1 --velocity inf", "--velocity must be a finite number"),
         ("zone --joint lift --position 1,5 --velocity 0", "got `1,5`"),
         ("train --all --seed -1", "--seed must be a whole number from 0"),
+        ("soak --seed 1 --steps 0", "--steps must be a whole number from 1"),
         ("train --all --episodes 0", "--episodes must be a whole number from 1"),
         ("train --all --run ../x", "--run must be a folder name"),
         ("train --all --run .hidden", "--run must be a folder name"),

@@ -1,4 +1,4 @@
-//! Commands about motion alone: `tables`, `profile`, `zone`, `dynamics`. Builds without the learner.
+//! Commands about motion alone: `tables`, `profile`, `zone`, `soak`, `dynamics`. Builds without the learner.
 #![forbid(unsafe_code)]
 
 use std::path::{Path, PathBuf};
@@ -10,6 +10,7 @@ use jbtg::{Shape, Timing};
 use runner::arguments::Arguments;
 use runner::command;
 use runner::config::{self, ConfigSpec};
+use runner::kinematics::soak::{self, SoakRequest};
 use runner::kinematics::{self, ProfileRequest, Tables, ZoneFormat};
 
 fn main() -> ExitCode {
@@ -17,7 +18,7 @@ fn main() -> ExitCode {
 }
 
 fn dispatch(command: &str, words: Vec<String>) -> Result<String> {
-    let mut arguments = Arguments::parse(words, &["check", "json"])?;
+    let mut arguments = Arguments::parse(words, switches(command))?;
     match command {
         "tables" => {
             let what = if arguments.switch("check")? { Tables::Check } else { Tables::Build };
@@ -55,7 +56,27 @@ fn dispatch(command: &str, words: Vec<String>) -> Result<String> {
             arguments.finish()?;
             kinematics::dynamics(&config, &states)
         }
-        _ => bail!("no command is called '{command}'; there are tables, zone, profile and dynamics"),
+        "soak" => {
+            let request = SoakRequest {
+                steps: arguments.required("steps")?,
+                seed: arguments.required("seed")?,
+                threads: arguments.optional("threads")?,
+                json: arguments.optional("json")?,
+                case: arguments.optional("case")?,
+            };
+            arguments.finish()?;
+            soak::soak(&request)
+        }
+        _ => bail!("no command is called '{command}'; there are tables, zone, profile, soak and dynamics"),
+    }
+}
+
+/// Flags of `command` that take no value.
+fn switches(command: &str) -> &'static [&'static str] {
+    match command {
+        "tables" => &["check"],
+        "zone" => &["json"],
+        _ => &[],
     }
 }
 
