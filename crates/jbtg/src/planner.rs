@@ -177,27 +177,20 @@ impl Planner {
     /// Velocities that one period can reach from `velocity` [rad/s or m/s], within the velocity limits.
     ///
     /// Never empty. From a velocity beyond a limit it holds what leads back fastest: everything reachable inside
-    /// the limits, or the one reachable velocity nearest to them. A velocity that is not finite gives NaN ends.
+    /// the limits, or the one reachable velocity nearest to them. NaN gives NaN ends, an infinity itself.
     #[must_use]
     #[inline]
     pub fn reachable(&self, velocity: f64) -> Interval {
-        let highest = nearest_within(
-            velocity,
-            velocity + self.increasing.velocity_change,
-            self.increasing.velocity_change,
-        );
-        let lowest = nearest_within(
-            velocity,
-            velocity - self.decreasing.velocity_change,
-            self.decreasing.velocity_change,
-        );
-        if velocity > self.velocity.max {
-            return Interval::new(lowest.max(self.velocity.min), self.velocity.max.max(lowest));
+        let Interval { min, max } = self.velocity;
+        let highest = highest_within(velocity, self.increasing.velocity_change);
+        let lowest = -highest_within(-velocity, self.decreasing.velocity_change);
+        if velocity > max {
+            return Interval::new(larger(min, lowest), larger(max, lowest));
         }
-        if velocity < self.velocity.min {
-            return Interval::new(self.velocity.min.min(highest), highest.min(self.velocity.max));
+        if velocity < min {
+            return Interval::new(smaller(min, highest), smaller(max, highest));
         }
-        Interval::new(lowest.max(self.velocity.min), highest.min(self.velocity.max))
+        Interval::new(larger(min, lowest), smaller(max, highest))
     }
 
     /// Displacement of the step from `v1` to `v2` over one period [rad or m]: exactly what [`Planner::ramp`] adds
@@ -207,9 +200,8 @@ impl Planner {
     #[must_use]
     #[inline]
     pub fn displacement(&self, v1: f64, v2: f64) -> f64 {
-        let change = v2 - v1;
-        let lag = if change >= 0.0 { self.increasing.lag(change) } else { -self.decreasing.lag(-change) };
-        v2 * self.spec.period - lag
+        let (pulses, sign, change) = self.towards(v2 - v1);
+        v2 * self.spec.period - sign * pulses.lag(change)
     }
 
     /// The step from `position` and `v1` to `v2` in exactly one period.
@@ -249,15 +241,20 @@ impl Planner {
     /// The pulse of a step that changes the velocity by `change`; it rests if that is 0.
     #[inline]
     fn signed_pulse(&self, change: f64) -> Pulse {
+        let (pulses, sign, change) = self.towards(change);
         if change > 0.0 {
-            self.increasing.pulse(change)
-        } else if change < 0.0 {
-            let pulse = self.decreasing.pulse(-change);
-            Pulse { acceleration: -pulse.acceleration, ..pulse }
+            let pulse = pulses.pulse(change);
+            Pulse { acceleration: sign * pulse.acceleration, ..pulse }
         } else {
             let rest = self.spec.period; // Case 3 of [P, Alg. 3].
             Pulse { acceleration: 0.0, ramp_up: 0.0, cruise: 0.0, ramp_down: 0.0, rest }
         }
+    }
+
+    /// The pulses in the direction of a velocity change, its sign and its magnitude.
+    #[inline]
+    const fn towards(&self, change: f64) -> (&PulseLimits, f64, f64) {
+        if change < 0.0 { (&self.decreasing, -1.0, -change) } else { (&self.increasing, 1.0, change) }
     }
 
     const fn pulses(&self, direction: Direction) -> &PulseLimits {
@@ -268,23 +265,37 @@ impl Planner {
     }
 }
 
-/// `target`, moved towards `start` by an ulp where rounding put it further away than `change`.
+/// The largest velocity that is at most `change` above `velocity`: their sum, an ulp less where rounding took it further.
 #[inline]
-fn nearest_within(start: f64, target: f64, change: f64) -> f64 {
-    if (target - start).abs() > change {
-        if target > start { target.next_down() } else { target.next_up() }
-    } else {
-        target
-    }
+fn highest_within(velocity: f64, change: f64) -> f64 {
+    let target = velocity + change;
+    if target - velocity > change { target.next_down() } else { target }
 }
 
+/// `f64::min` in one instruction; a NaN `b` stays.
+#[inline]
+fn smaller(a: f64, b: f64) -> f64 {
+    if a < b { a } else { b }
+}
+
+/// `f64::max` in one instruction; a NaN `b` stays.
+#[inline]
+fn larger(a: f64, b: f64) -> f64 {
+    if a > b { a } else { b }
+}
+
+#[inline]
 fn check_finite(position: f64, v1: f64, v2: f64) -> Result<(), RampError> {
-    for (name, value) in [("position", position), ("initial velocity", v1), ("final velocity", v2)] {
-        if !value.is_finite() {
-            return Err(RampError::NotFinite { name, value });
-        }
-    }
-    Ok(())
+    let (name, value) = if !position.is_finite() {
+        ("position", position)
+    } else if !v1.is_finite() {
+        ("initial velocity", v1)
+    } else if !v2.is_finite() {
+        ("final velocity", v2)
+    } else {
+        return Ok(());
+    };
+    Err(RampError::NotFinite { name, value })
 }
 
 /// Refuses periods that leave next to nothing, and limits whose quintics would overflow or underflow.
@@ -294,7 +305,10 @@ fn check_authority(pulse: &PulseLimits, period: f64, speed: f64) -> Result<(), P
     let smallest_change = f64::EPSILON * speed.min(pulse.velocity_change); // smaller ones may vanish
     let numbers = [
         ("acceleration", a),
+        ("inverse acceleration", 1.0 / a),
         ("velocity change", pulse.velocity_change),
+        ("velocity change without a cruise", pulse.ramps_only),
+        ("inverse velocity change without a cruise", 1.0 / pulse.ramps_only),
         ("ramp duration", shortest),
         ("shortest ramp cubed", (1e-6 * shortest) * (1e-6 * shortest) * (1e-6 * shortest)),
         ("quintic coefficient", a / (shortest * shortest * shortest)),

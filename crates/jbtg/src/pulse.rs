@@ -42,6 +42,12 @@ pub(crate) struct PulseLimits {
     stretched_lag: f64,
     /// Velocity change of two full ramps without a cruise, dV_min of [P, Eq. (dvmin)].
     pub(crate) ramps_only: f64,
+    /// 1/`ramps_only`.
+    per_ramps_only: f64,
+    /// 1/`acceleration`.
+    per_acceleration: f64,
+    /// Lag of MAP per velocity change and [`scale`](Self::scale) \[s\].
+    scaled_lag: f64,
     /// ∫∫ of the shape over its ramp, A = T = 1.
     displacement: f64,
     timing: Timing,
@@ -97,6 +103,8 @@ impl PulseLimits {
         let width = period - 0.5 * (ramp_up + ramp_down);
         let cruise = (period - ramp_up - ramp_down).max(0.0);
         let largest = Pulse { acceleration: 1.0, ramp_up, cruise, ramp_down, rest: 0.0 };
+        let ramps = Pulse { cruise: 0.0, ..largest };
+        let ramps_only = 0.5 * acceleration * (ramp_up + ramp_down);
         Self {
             acceleration,
             ramp_up,
@@ -106,7 +114,10 @@ impl PulseLimits {
             period,
             stretched_gain: 1.0 / width,
             stretched_lag: largest.moment(constants.displacement) / width,
-            ramps_only: 0.5 * acceleration * (ramp_up + ramp_down),
+            ramps_only,
+            per_ramps_only: 1.0 / ramps_only,
+            per_acceleration: 1.0 / acceleration,
+            scaled_lag: 2.0 * ramps.moment(constants.displacement) / (ramp_up + ramp_down),
             displacement: constants.displacement,
             timing,
         }
@@ -125,8 +136,7 @@ impl PulseLimits {
             },
             Timing::Fastest if change >= self.ramps_only => {
                 // [P, Alg. 1], MSAP.
-                let room = (self.period - self.ramp_up - self.ramp_down).max(0.0);
-                let cruise = ((change - self.ramps_only) / self.acceleration).min(room);
+                let (cruise, room) = self.cruise(change);
                 Pulse {
                     acceleration: (change / (cruise + 0.5 * (self.ramp_up + self.ramp_down)))
                         .min(self.acceleration),
@@ -138,7 +148,7 @@ impl PulseLimits {
             }
             Timing::Fastest => {
                 // [P, Alg. 2], MAP: dV is proportional to a_peak², [P, Eq. (apeak time)].
-                let scale = sqrt(change / self.ramps_only).max(MIN_RAMP_SHARE);
+                let scale = self.scale(change);
                 let (ramp_up, ramp_down) = (self.ramp_up * scale, self.ramp_down * scale);
                 Pulse {
                     acceleration: (2.0 * change / (ramp_up + ramp_down)).min(self.acceleration),
@@ -157,12 +167,27 @@ impl PulseLimits {
     pub(crate) fn lag(&self, change: f64) -> f64 {
         match self.timing {
             Timing::Stretched => change * self.stretched_lag,
-            Timing::Fastest if change > 0.0 => {
-                let pulse = self.pulse(change);
-                pulse.acceleration * pulse.moment(self.displacement)
+            Timing::Fastest if change >= self.ramps_only => {
+                let Self { acceleration, ramp_up, ramp_down, .. } = *self;
+                let (cruise, _) = self.cruise(change);
+                let pulse = Pulse { acceleration, ramp_up, cruise, ramp_down, rest: 0.0 };
+                acceleration * pulse.moment(self.displacement)
             }
-            Timing::Fastest => 0.0,
+            Timing::Fastest => change * self.scale(change) * self.scaled_lag,
         }
+    }
+
+    /// Duration of MSAP's cruise, [P, Eq. (cruise time)], and what the ramps leave for it \[s\].
+    #[inline]
+    fn cruise(&self, change: f64) -> (f64, f64) {
+        let room = (self.period - self.ramp_up - self.ramp_down).max(0.0);
+        (((change - self.ramps_only) * self.per_acceleration).min(room), room)
+    }
+
+    /// Durations of MAP's ramps as a share of the full ones, a_peak/A of [P, Eq. (apeak time)].
+    #[inline]
+    fn scale(&self, change: f64) -> f64 {
+        sqrt(change * self.per_ramps_only).max(MIN_RAMP_SHARE)
     }
 
     /// Largest distance per velocity change that a pulse first moves against its direction (or, seen from its end,
@@ -192,6 +217,7 @@ impl PulseLimits {
 
 impl Pulse {
     /// First moment of the pulse about its start, per acceleration [s²].
+    #[inline]
     pub(crate) fn moment(&self, displacement: f64) -> f64 {
         let Self { ramp_up, cruise, ramp_down, .. } = *self;
         (0.5 - displacement) * ramp_up * ramp_up

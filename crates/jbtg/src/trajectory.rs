@@ -62,6 +62,7 @@ impl Trajectory {
             p += ramp_down * (v + (0.5 - shape.displacement) * a * ramp_down);
             time += ramp_down;
         }
+        let rest = if a == 0.0 { duration } else { rest }; // a tiny change may need none that a number can hold
         if rest > 0.0 {
             trajectory.push(Segment::new(time, rest, (p, end.1), (Ramp::Constant, 0.0), shape));
         }
@@ -73,9 +74,14 @@ impl Trajectory {
         Self { segments: [Segment::EMPTY; MAX_SEGMENTS], count: 0, duration, end }
     }
 
+    /// Adds a segment after the others; at most [`MAX_SEGMENTS`] fit.
+    #[inline]
     pub(crate) fn push(&mut self, segment: Segment) {
-        self.segments[self.count] = segment;
-        self.count += 1;
+        debug_assert!(self.count < MAX_SEGMENTS, "no motion has more phases");
+        if let Some(slot) = self.segments.get_mut(self.count) {
+            *slot = segment;
+            self.count += 1;
+        }
     }
 
     /// The same motion in the opposite direction, bit for bit.
@@ -96,13 +102,9 @@ impl Trajectory {
     #[inline]
     pub fn state_at(&self, time: f64) -> State {
         if time < self.duration {
-            let time = time.max(0.0);
-            let mut index = self.count - 1;
-            while index > 0 && time < self.segments[index].start {
-                index -= 1;
-            }
-            let segment = &self.segments[index];
-            segment.state_at(time - segment.start)
+            let time = if time > 0.0 { time } else { 0.0 };
+            let begun = self.segments().iter().rev().find(|segment| segment.start <= time);
+            begun.map_or(self.end, |segment| segment.state_at(time - segment.start))
         } else {
             self.end
         }
@@ -123,7 +125,7 @@ impl Trajectory {
     /// The quintics in order of time; at least one, at most [`MAX_SEGMENTS`].
     #[must_use]
     pub fn segments(&self) -> &[Segment] {
-        &self.segments[..self.count]
+        self.segments.get(..self.count).unwrap_or(&self.segments)
     }
 
     /// The control points in order of time: the start of every quintic, and the end.
@@ -157,7 +159,7 @@ impl Trajectory {
     pub fn extrema(&self) -> Extrema {
         let mut extrema = Extrema::at(self.end);
         for segment in self.segments() {
-            extrema = extrema::including_segment(extrema, segment);
+            extrema::include_segment(&mut extrema, segment);
         }
         extrema
     }
