@@ -85,7 +85,7 @@ pub(crate) fn include_segment(extrema: &mut Extrema, segment: &Segment) {
         }
         let acceleration = [2.0 * b2, 6.0 * b3, 12.0 * b4, 20.0 * b5];
         if !roots::has_one_sign(acceleration) {
-            turns = Roots::between(&jerk, acceleration);
+            turns = Roots::of_cubic(&jerk, acceleration);
             for u in turns.iter() {
                 widen(&mut extrema.velocity, at(u).velocity);
             }

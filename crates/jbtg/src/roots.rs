@@ -13,7 +13,7 @@ pub(crate) struct Roots {
 }
 
 /// Change of the primitive that a root need not be refined for, in units of the polynomial's size: far below an ulp.
-const NEGLIGIBLE: f64 = f64::EPSILON / 1024.0;
+const NEGLIGIBLE: f64 = f64::EPSILON / 16.0;
 
 /// Whether c₀ + c₁u + … is of one sign on [0, 1] by its Bernstein coefficients, so that it has no root inside.
 ///
@@ -22,9 +22,15 @@ const NEGLIGIBLE: f64 = f64::EPSILON / 1024.0;
 #[inline]
 pub(crate) fn has_one_sign<const N: usize>(coefficients: [f64; N]) -> bool {
     let bernstein = bernstein(coefficients);
-    let size: f64 = coefficients.iter().map(|c| c.abs()).sum();
-    let tolerance = 4.0 * f64::EPSILON * size;
+    let tolerance = rounding(coefficients);
     bernstein.iter().all(|b| *b >= -tolerance) || bernstein.iter().all(|b| *b <= tolerance)
+}
+
+/// Bound on what rounding makes of the value of c₀ + c₁u + … on [0, 1].
+#[inline]
+fn rounding<const N: usize>(coefficients: [f64; N]) -> f64 {
+    let size: f64 = coefficients.iter().map(|c| c.abs()).sum();
+    4.0 * f64::EPSILON * size
 }
 
 /// Bernstein coefficients on [0, 1]: c₀ + c₁u + … lies between the least and the greatest of them there.
@@ -33,7 +39,7 @@ fn bernstein<const N: usize>(coefficients: [f64; N]) -> [f64; N] {
     let mut scaled = coefficients;
     let mut binomial = 1.0;
     for (k, c) in scaled.iter_mut().enumerate() {
-        *c /= binomial;
+        *c *= 1.0 / binomial;
         binomial *= (N - 1 - k) as f64 / (k + 1) as f64;
     }
     for first in 1..N {
@@ -66,6 +72,27 @@ impl Roots {
         roots
     }
 
+    /// Roots of c₀ + c₁u + c₂u² + c₃u³, given the roots of its derivative.
+    ///
+    /// One that is 0 at an end, but for rounding, has closed forms: acceleration is, at the outer end of a ramp.
+    #[inline]
+    pub(crate) fn of_cubic(turns: &Self, coefficients: [f64; 4]) -> Self {
+        let [c0, c1, c2, c3] = coefficients;
+        let tolerance = rounding(coefficients);
+        if c0.abs() <= tolerance {
+            Self::of_quadratic([c1, c2, c3])
+        } else if (c0 + c1 + c2 + c3).abs() <= tolerance {
+            let from_end = Self::of_quadratic([-(c1 + 2.0 * c2 + 3.0 * c3), c2 + 3.0 * c3, -c3]);
+            let mut roots = Self::NONE;
+            for root in from_end.iter().rev() {
+                roots.push(1.0 - root);
+            }
+            roots
+        } else {
+            Self::between(turns, coefficients)
+        }
+    }
+
     /// Roots of c₀ + c₁u + …, at most a quartic, given the roots of its derivative: between two of those it is
     /// monotone, so a change of sign brackets exactly one root.
     ///
@@ -90,7 +117,7 @@ impl Roots {
         self.count == 0
     }
 
-    pub(crate) fn iter(&self) -> impl Iterator<Item = f64> + '_ {
+    pub(crate) fn iter(&self) -> impl DoubleEndedIterator<Item = f64> + '_ {
         self.values.iter().copied().take(self.count)
     }
 
@@ -121,7 +148,12 @@ fn bracketed<const N: usize>(
     (value_left, value_right): (f64, f64),
 ) -> f64 {
     let negligible = NEGLIGIBLE * (value_left.abs() + value_right.abs());
-    let mut u = 0.5 * (left + right);
+    let guess = if value_left.abs() < value_right.abs() {
+        left + distance_to_root(coefficients, left, value_left, -value_left)
+    } else {
+        right + distance_to_root(coefficients, right, value_right, value_right)
+    };
+    let mut u = if guess > left && guess < right { guess } else { 0.5 * (left + right) };
     for _ in 0..100 {
         let (value, slope) = value_and_slope(coefficients, u);
         if value == 0.0 {
@@ -132,14 +164,31 @@ fn bracketed<const N: usize>(
         } else {
             right = u;
         }
-        let newton = u - value / slope;
-        let next = if newton > left && newton < right { newton } else { 0.5 * (left + right) };
-        if (value * (next - u)).abs() <= negligible || right - left <= f64::EPSILON * u {
-            return next;
+        let step = value / slope;
+        if (value * step).abs() <= negligible {
+            return (u - step).max(left).min(right);
         }
-        u = next;
+        let newton = u - step;
+        u = if newton > left && newton < right { newton } else { 0.5 * (left + right) };
+        if right - left <= f64::EPSILON * u {
+            break;
+        }
     }
     u
+}
+
+/// From `u` to the root of the parabola that touches the polynomial there. `sign` has the sign of the slope between the two.
+///
+/// A bracket begins where the slope is 0, where a line would lead nowhere.
+#[inline]
+fn distance_to_root<const N: usize>(coefficients: &[f64; N], u: f64, value: f64, sign: f64) -> f64 {
+    let (_, slope) = value_and_slope(coefficients, u);
+    let mut curvature = 0.0;
+    for k in (2..N).rev() {
+        curvature = curvature * u + (k * (k - 1)) as f64 * coefficients[k];
+    }
+    let root = sqrt(slope * slope - 2.0 * value * curvature);
+    -2.0 * value / (slope + root.copysign(sign)) // NaN if the parabola has no root
 }
 
 #[cfg(test)]
@@ -171,6 +220,24 @@ mod tests {
         check_planted([0.001, 0.002, 0.5, 0.999]);
         check_planted([-1.0, 0.3, 0.4, 2.0]);
         check_planted([-3.0, -2.0, 1.5, 2.0]);
+    }
+
+    #[test]
+    fn a_cubic_that_is_zero_at_an_end_has_its_other_roots_inside() {
+        for (at_end, others) in [(0.0, [0.2, 0.9]), (1.0, [0.01, 0.4]), (1.0, [0.5, 3.0]), (0.0, [-1.0, 0.3])]
+        {
+            let [a, b] = others;
+            // (u − e)(u − a)(u − b), 3·(…) so that the sum at 1 rounds
+            let cubic = [-at_end * a * b, at_end * (a + b) + a * b, -(at_end + a + b), 1.0].map(|c| 3.0 * c);
+            let [_, c1, c2, c3] = cubic;
+            let turns = Roots::of_quadratic([c1, 2.0 * c2, 3.0 * c3]);
+            let found: Vec<f64> = Roots::of_cubic(&turns, cubic).iter().collect();
+            let expected: Vec<f64> = others.into_iter().filter(|u| *u > 0.0 && *u < 1.0).collect();
+            assert_eq!(found.len(), expected.len(), "planted {at_end} and {others:?}, found {found:?}");
+            for (u, v) in found.iter().zip(&expected) {
+                assert!((u - v).abs() < 1e-14, "planted {at_end} and {others:?}, found {found:?}");
+            }
+        }
     }
 
     #[test]
