@@ -16,6 +16,8 @@ pub struct Data {
     pub(crate) bias: Vec<f64>,
     pub(crate) gravity_effort: Vec<f64>,
     pub(crate) column: Vec<f64>,
+    /// L⁻¹Jᵀ of the tip, column by column.
+    pub(crate) tip_columns: [Vec<f64>; 3],
     // Tree coordinates.
     pub(crate) tree_position: Vec<f64>,
     pub(crate) tree_velocity: Vec<f64>,
@@ -57,6 +59,7 @@ impl Data {
             bias: n(),
             gravity_effort: n(),
             column: n(),
+            tip_columns: [n(), n(), n()],
             tree_position: tree(),
             tree_velocity: tree(),
             tree_drift: tree(),

@@ -208,7 +208,7 @@ impl CraneModel {
     }
 }
 
-fn singular((pivot, value): (usize, f64)) -> DynamicsError {
+pub(crate) fn singular((pivot, value): (usize, f64)) -> DynamicsError {
     DynamicsError::SingularMassMatrix { pivot, value }
 }
 

@@ -1,5 +1,7 @@
 //! What can go wrong when a model is built and when it is used.
 
+use crate::fault::{CloseFault, LoopFault, TextFault, TreeFault};
+
 /// A URDF and a loop file that do not make a crane.
 #[derive(Debug, thiserror::Error)]
 pub enum ModelError {
@@ -187,10 +189,11 @@ pub enum ModelError {
         /// The bound.
         bound: f64,
     },
-    /// A loop that cannot be closed at every stroke of its actuator.
+    /// A loop that cannot be closed, or hardly, at every stroke of its actuator.
     #[error(
         "loop `{closed_loop}` cannot be closed over the range of `{joint}`: \
-         strokes {lower} to {upper} wanted, {solvable_lower} to {solvable_upper} solvable"
+         strokes {lower} to {upper} wanted, {solvable_lower} to {solvable_upper} solvable; \
+         at stroke {stroke} {fault}"
     )]
     LoopCannotClose {
         /// The loop.
@@ -201,10 +204,24 @@ pub enum ModelError {
         lower: f64,
         /// Greatest stroke of the actuator \[m\].
         upper: f64,
-        /// Least solvable stroke \[m\]; greater than `solvable_upper` if there is none.
+        /// Least solvable stroke \[m\].
         solvable_lower: f64,
         /// Greatest solvable stroke \[m\].
         solvable_upper: f64,
+        /// The end of the range where it fails \[m\].
+        stroke: f64,
+        /// What is wrong there.
+        fault: Box<CloseFault>,
+    },
+    /// A loop that has no usable solution at any stroke.
+    #[error("loop `{closed_loop}` cannot be closed at any stroke of `{joint}`: {fault}")]
+    LoopNeverCloses {
+        /// The loop.
+        closed_loop: String,
+        /// The cylinder's joint.
+        joint: String,
+        /// What is wrong.
+        fault: Box<CloseFault>,
     },
     /// The mass matrix is singular in the middle of the actuators' ranges.
     #[error(
@@ -213,140 +230,6 @@ pub enum ModelError {
     SingularMassMatrix {
         /// The first actuator whose pivot is not positive.
         joint: String,
-    },
-}
-
-/// How an element of a URDF is incomplete or no number.
-#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
-pub enum TextFault {
-    /// An attribute is missing.
-    #[error("<{element}> lacks the attribute `{attribute}`")]
-    NoAttribute {
-        /// The element.
-        element: String,
-        /// The attribute.
-        attribute: &'static str,
-    },
-    /// An element is missing in another.
-    #[error("<{element}> lacks <{child}>")]
-    NoChild {
-        /// The outer element.
-        element: String,
-        /// The one that it lacks.
-        child: &'static str,
-    },
-    /// An attribute that is not one number.
-    #[error("{attribute} of <{element}> must be a number, got `{text}`")]
-    NoNumber {
-        /// The element.
-        element: String,
-        /// The attribute.
-        attribute: &'static str,
-        /// Its text.
-        text: String,
-    },
-    /// An attribute that is not three numbers.
-    #[error("{attribute} of <{element}> must be three numbers, got `{text}`")]
-    NoVector {
-        /// The element.
-        element: String,
-        /// The attribute.
-        attribute: &'static str,
-        /// Its text.
-        text: String,
-    },
-}
-
-/// How links and joints fail to form a tree.
-#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
-pub enum TreeFault {
-    /// There is no link.
-    #[error("it has no link")]
-    Empty,
-    /// Two joints have one child.
-    #[error("link `{link}` is the child of joints `{first}` and `{second}`")]
-    TwoParents {
-        /// The child.
-        link: String,
-        /// One joint.
-        first: String,
-        /// The other.
-        second: String,
-    },
-    /// More than one link has no parent.
-    #[error("links `{first}` and `{second}` both have no parent")]
-    TwoRoots {
-        /// One link.
-        first: String,
-        /// Another.
-        second: String,
-    },
-    /// Some joints form a cycle.
-    #[error("joint `{joint}` is part of a cycle; close loops in the loop file instead")]
-    Cycle {
-        /// One joint that the root does not reach.
-        joint: String,
-    },
-}
-
-/// How a loop's joints fail to make a cylinder between two hinged bodies.
-#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
-pub enum LoopFault {
-    /// Not two dependent joints.
-    #[error("dependent must name two joints, got {found}")]
-    DependentCount {
-        /// How many it names.
-        found: usize,
-    },
-    /// The cylinder has no actuator.
-    #[error("independent `{joint}` is not an actuator")]
-    IndependentNotActuated {
-        /// The cylinder's joint.
-        joint: String,
-    },
-    /// The cylinder is not prismatic.
-    #[error("independent `{joint}` must be prismatic")]
-    IndependentNotPrismatic {
-        /// The joint.
-        joint: String,
-    },
-    /// A dependent joint is not revolute.
-    #[error("dependent `{joint}` must be revolute or continuous")]
-    DependentNotRevolute {
-        /// The joint.
-        joint: String,
-    },
-    /// No dependent joint carries the cylinder's barrel.
-    #[error(
-        "no dependent joint carries the barrel: `{joint}` does not start on a body that one of them moves"
-    )]
-    NoBarrel {
-        /// The cylinder's joint.
-        joint: String,
-    },
-    /// Barrel and turned body are not hinged to one body.
-    #[error("`{barrel}` and `{main}` must start on one body")]
-    HingesOnDifferentBodies {
-        /// The barrel's joint.
-        barrel: String,
-        /// The turned joint.
-        main: String,
-    },
-    /// The pin's halves are not on the rod and on the turned body.
-    #[error(
-        "of frame_a and frame_b one must be on the rod moved by `{rod}`, the other on the body moved by `{main}`"
-    )]
-    PinElsewhere {
-        /// The cylinder's joint.
-        rod: String,
-        /// The turned joint.
-        main: String,
-    },
-    /// A hinge and a pin in one place: no triangle.
-    #[error("{side} has length zero")]
-    ZeroSide {
-        /// Which side of the triangle.
-        side: &'static str,
     },
 }
 
@@ -395,6 +278,20 @@ pub enum DynamicsError {
         /// Value of the pivot.
         value: f64,
     },
+    /// A posture in which some direction is closed to the tip.
+    #[error(
+        "the posture is near-singular: the tip hardly gives way along {direction:?}, \
+         {ratio:e} of what it does along the easiest direction"
+    )]
+    TipNearSingular {
+        /// Unit vector, world axes.
+        direction: [f64; 3],
+        /// Mobility along it, relative to the greatest.
+        ratio: f64,
+    },
+    /// A direction of length zero.
+    #[error("direction has length zero")]
+    ZeroDirection,
     /// A step whose period is not a positive number.
     #[error("period must be finite and > 0, got {value}")]
     Period {

@@ -7,7 +7,7 @@ use serde::Serialize;
 use crate::data::Data;
 use crate::error::DynamicsError;
 use crate::model::CraneModel;
-use crate::spatial::{Motion, Transform, rotation_about};
+use crate::spatial::{Motion, Transform};
 use crate::tree::JointKind;
 
 /// Pose of a frame in the world.
@@ -102,11 +102,15 @@ impl CraneModel {
                     Motion { angular: Vector3::zeros(), linear: -self.gravity },
                 ),
             };
-            let X_WJ = X_WP * joint.X_PJ;
-            let axis_W = X_WJ.rotation * joint.axis;
+            let X_WJ = if joint.is_parallel {
+                Transform { translation: X_WP.point(&joint.X_PJ.translation), ..X_WP }
+            } else {
+                X_WP * joint.X_PJ
+            };
+            let axis_W = joint.turning.seen_from_outside(&X_WJ.rotation);
             let (X_WB, S) = match joint.kind {
                 JointKind::Revolute => (
-                    Transform { rotation: X_WJ.rotation * rotation_about(&joint.axis, q), ..X_WJ },
+                    Transform { rotation: joint.turning.turned(&X_WJ.rotation, q), ..X_WJ },
                     Motion { angular: axis_W, linear: X_WJ.translation.cross(&axis_W) },
                 ),
                 JointKind::Prismatic => (

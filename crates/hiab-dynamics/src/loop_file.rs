@@ -54,6 +54,8 @@ pub enum LoopKind {
     /// The origins of both frames coincide. In a planar loop two of the three equations are independent, and the
     /// third, across the plane, must hold by construction.
     Point3d,
+    /// Both frames coincide, orientation included. Refused: a cylinder between hinges closes no such loop.
+    Frame6d,
 }
 
 /// Side of the line from the turned joint to the barrel's hinge on which the pin lies.

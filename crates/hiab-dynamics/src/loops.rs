@@ -6,11 +6,12 @@ use std::f64::consts::{PI, TAU};
 use nalgebra::{Vector2, Vector3};
 
 use crate::actuator::Actuator;
-use crate::error::{LoopFault, ModelError};
-use crate::loop_file::{Branch, ClosedLoopSpec};
+use crate::error::ModelError;
+use crate::fault::{CloseFault, LoopFault};
+use crate::loop_file::{Branch, ClosedLoopSpec, LoopKind};
 use crate::spatial::Transform;
 use crate::tree::{JointKind, Tree};
-use crate::triangle::Triangle;
+use crate::triangle::{MIN_SIN_AT_HINGE, Triangle};
 
 /// How far from parallel axes may be \[1\], and how far from one plane pins may be \[m\]: what rounding of published
 /// drawings to a micrometre leaves.
@@ -80,20 +81,8 @@ impl ClosedLoop {
         let eta = if eta.abs() < 1e-12 * (a + b) { 0.0 } else { eta };
 
         let range = &actuators[actuator];
-        let (min_stroke, max_stroke) =
-            Triangle::solvable_strokes(a, b, lambda, eta).unwrap_or((f64::INFINITY, f64::NEG_INFINITY));
-        // A range that begins at or above zero counts from the cylinder's retracted length: no rod goes below it.
-        let min_stroke = if range.lower() >= 0.0 { min_stroke.max(0.0) } else { min_stroke };
-        if range.lower() < min_stroke || range.upper() > max_stroke {
-            return Err(ModelError::LoopCannotClose {
-                closed_loop: spec.name.clone(),
-                joint: spec.independent.clone(),
-                lower: range.lower(),
-                upper: range.upper(),
-                solvable_lower: min_stroke,
-                solvable_upper: max_stroke,
-            });
-        }
+        let shape = Shape { a, b, lambda, eta };
+        let (min_stroke, max_stroke) = usable_strokes(spec, &shape, range, &tree.joints[main].name)?;
 
         let branch = match spec.branch {
             Branch::Positive => 1.0,
@@ -117,6 +106,66 @@ impl ClosedLoop {
         triangle.main_zero += turns_towards(tree.joints[main].middle, at_main.position);
         triangle.barrel_zero += turns_towards(tree.joints[barrel].middle, at_barrel.position);
         Ok(Self { name: spec.name.clone(), actuator, main, barrel, triangle })
+    }
+}
+
+/// The sides of a loop's triangle.
+struct Shape {
+    a: f64,
+    b: f64,
+    lambda: f64,
+    eta: f64,
+}
+
+/// Solvable strokes \[m\], which must contain the actuator's range.
+fn usable_strokes(
+    spec: &ClosedLoopSpec,
+    shape: &Shape,
+    range: &Actuator,
+    main: &str,
+) -> Result<(f64, f64), ModelError> {
+    let Shape { a, b, lambda, eta } = *shape;
+    let (closed_loop, joint) = (spec.name.clone(), spec.independent.clone());
+    let fault = |stroke: f64| Box::new(close_fault(shape, stroke, main.to_owned()));
+    let Some((min_stroke, max_stroke)) = Triangle::solvable_strokes(a, b, lambda, eta) else {
+        return Err(ModelError::LoopNeverCloses { closed_loop, joint, fault: fault(range.lower()) });
+    };
+    // A range that begins at or above zero counts from the cylinder's retracted length: no rod goes below it.
+    let retracted = range.lower() >= 0.0 && min_stroke < 0.0;
+    let min_stroke = if retracted { 0.0 } else { min_stroke };
+    if max_stroke < min_stroke {
+        return Err(ModelError::LoopNeverCloses { closed_loop, joint, fault: fault(range.lower()) });
+    }
+    let ends = [range.lower(), range.upper()];
+    match ends.into_iter().find(|end| !(min_stroke..=max_stroke).contains(end)) {
+        None => Ok((min_stroke, max_stroke)),
+        Some(stroke) => Err(ModelError::LoopCannotClose {
+            closed_loop,
+            joint,
+            lower: range.lower(),
+            upper: range.upper(),
+            solvable_lower: min_stroke,
+            solvable_upper: max_stroke,
+            stroke,
+            fault: fault(stroke),
+        }),
+    }
+}
+
+/// Why a loop of this shape has no usable solution at `stroke`.
+fn close_fault(shape: &Shape, stroke: f64, main: String) -> CloseFault {
+    let Shape { a, b, lambda, eta } = *shape;
+    let along = lambda + stroke;
+    let length = along.hypot(eta);
+    if along <= 0.0 {
+        CloseFault::BehindHinge
+    } else if length < (a - b).abs() {
+        CloseFault::TooShort { main, gap: (a - b).abs() - length }
+    } else if length > a + b {
+        CloseFault::TooLong { main, gap: length - (a + b) }
+    } else {
+        let angle = ((a * a + b * b - length * length) / (2.0 * a * b)).clamp(-1.0, 1.0).acos();
+        CloseFault::NearSingular { main, angle: angle.min(PI - angle), bound: MIN_SIN_AT_HINGE.asin() }
     }
 }
 
@@ -144,6 +193,9 @@ fn members(spec: &ClosedLoopSpec, tree: &Tree, actuators: &[Actuator]) -> Result
     };
     let fail = |fault| Err(topology(spec, fault));
 
+    if spec.kind == LoopKind::Frame6d {
+        return fail(LoopFault::Weld);
+    }
     let rod = joint("independent", &spec.independent)?;
     let [first, second] = spec.dependent.as_slice() else {
         return fail(LoopFault::DependentCount { found: spec.dependent.len() });

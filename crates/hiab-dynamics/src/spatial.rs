@@ -36,10 +36,55 @@ impl std::ops::Mul for Transform {
     }
 }
 
-/// Rotation by `angle` \[rad\] about the unit vector `axis` (Rodrigues).
-#[inline]
-pub(crate) fn rotation_about(axis: &Vector3<f64>, angle: f64) -> Matrix3<f64> {
-    let (s, c) = angle.sin_cos();
+/// A unit axis, told apart by what a rotation about it costs.
+#[derive(Clone, Copy, Debug)]
+pub(crate) enum Axis {
+    /// Coordinate axis 0, 1 or 2, and the sign of its direction.
+    Coordinate(usize, f64),
+    /// Any other unit vector.
+    Oblique(Vector3<f64>),
+}
+
+impl Axis {
+    /// Of a unit vector.
+    pub(crate) fn along(axis: &Vector3<f64>) -> Self {
+        match (0..3).find(|&i| axis[i].abs() == 1.0) {
+            Some(i) => Self::Coordinate(i, axis[i]),
+            None => Self::Oblique(*axis),
+        }
+    }
+
+    /// The axis in the outer frame of `rotation`.
+    #[inline]
+    pub(crate) fn seen_from_outside(&self, rotation: &Matrix3<f64>) -> Vector3<f64> {
+        match self {
+            Self::Coordinate(i, sign) => rotation.column(*i) * *sign,
+            Self::Oblique(axis) => rotation * axis,
+        }
+    }
+
+    /// `rotation`, followed inside by a rotation by `angle` \[rad\] about the axis.
+    #[inline]
+    pub(crate) fn turned(&self, rotation: &Matrix3<f64>, angle: f64) -> Matrix3<f64> {
+        let (s, c) = angle.sin_cos();
+        match self {
+            Self::Coordinate(i, sign) => {
+                let s = s * sign;
+                let column = |i: usize| Vector3::new(rotation[(0, i)], rotation[(1, i)], rotation[(2, i)]);
+                let (x, y, z) = (column(0), column(1), column(2));
+                match i {
+                    0 => Matrix3::from_columns(&[x, y * c + z * s, z * c - y * s]),
+                    1 => Matrix3::from_columns(&[x * c - z * s, y, z * c + x * s]),
+                    _ => Matrix3::from_columns(&[x * c + y * s, y * c - x * s, z]),
+                }
+            }
+            Self::Oblique(axis) => rotation * rodrigues(axis, s, c),
+        }
+    }
+}
+
+/// Rotation about the unit vector `axis` by the angle with sine `s` and cosine `c` (Rodrigues).
+fn rodrigues(axis: &Vector3<f64>, s: f64, c: f64) -> Matrix3<f64> {
     let (x, y, z) = (axis.x, axis.y, axis.z);
     let t = 1.0 - c;
     Matrix3::new(
@@ -120,6 +165,10 @@ impl Force {
     pub(crate) fn plus(&self, other: &Self) -> Self {
         Self { moment: self.moment + other.moment, force: self.force + other.force }
     }
+
+    pub(crate) fn scaled(&self, factor: f64) -> Self {
+        Self { moment: self.moment * factor, force: self.force * factor }
+    }
 }
 
 /// Inertia of a body, or of several, about the world origin in world axes.
@@ -130,22 +179,68 @@ pub(crate) struct Inertia {
     /// Mass times centre of mass \[kg·m\].
     pub(crate) first_moment: Vector3<f64>,
     /// Rotational inertia about the world origin \[kg·m²\].
-    pub(crate) about_origin: Matrix3<f64>,
+    pub(crate) about_origin: Symmetric,
+}
+
+/// A symmetric 3 × 3 matrix: six numbers instead of nine.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Symmetric {
+    diagonal: Vector3<f64>,
+    /// Entries (1, 2), (2, 0) and (0, 1).
+    beside: Vector3<f64>,
+}
+
+impl Symmetric {
+    const ZERO: Self = Self { diagonal: ZERO3, beside: ZERO3 };
+
+    /// R·`inner`·Rᵀ of a symmetric `inner`.
+    #[inline]
+    fn rotated(R: &Matrix3<f64>, inner: &Matrix3<f64>) -> Self {
+        let half = R * inner;
+        let row = |m: &Matrix3<f64>, i: usize| Vector3::new(m[(i, 0)], m[(i, 1)], m[(i, 2)]);
+        let entry = |i: usize, j: usize| row(&half, i).dot(&row(R, j));
+        Self {
+            diagonal: Vector3::new(entry(0, 0), entry(1, 1), entry(2, 2)),
+            beside: Vector3::new(entry(1, 2), entry(2, 0), entry(0, 1)),
+        }
+    }
+
+    /// Of a point mass at `r` about the origin: m (|r|² 1 − r rᵀ).
+    #[inline]
+    fn of_point(mass: f64, r: &Vector3<f64>) -> Self {
+        let (x, y, z) = (r.x, r.y, r.z);
+        let (xx, yy, zz) = (mass * x * x, mass * y * y, mass * z * z);
+        Self {
+            diagonal: Vector3::new(yy + zz, zz + xx, xx + yy),
+            beside: Vector3::new(-mass * y * z, -mass * z * x, -mass * x * y),
+        }
+    }
+
+    #[inline]
+    fn plus(&self, other: &Self) -> Self {
+        Self { diagonal: self.diagonal + other.diagonal, beside: self.beside + other.beside }
+    }
+
+    #[inline]
+    fn times(&self, v: &Vector3<f64>) -> Vector3<f64> {
+        let (d, b) = (&self.diagonal, &self.beside);
+        Vector3::new(
+            d.x * v.x + b.z * v.y + b.y * v.z,
+            b.z * v.x + d.y * v.y + b.x * v.z,
+            b.y * v.x + b.x * v.y + d.z * v.z,
+        )
+    }
 }
 
 impl Inertia {
-    pub(crate) const ZERO: Self = Self {
-        mass: 0.0,
-        first_moment: ZERO3,
-        about_origin: Matrix3::new(0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0),
-    };
+    pub(crate) const ZERO: Self = Self { mass: 0.0, first_moment: ZERO3, about_origin: Symmetric::ZERO };
 
     #[inline]
     pub(crate) fn plus(&self, other: &Self) -> Self {
         Self {
             mass: self.mass + other.mass,
             first_moment: self.first_moment + other.first_moment,
-            about_origin: self.about_origin + other.about_origin,
+            about_origin: self.about_origin.plus(&other.about_origin),
         }
     }
 
@@ -153,7 +248,7 @@ impl Inertia {
     #[inline]
     pub(crate) fn times(&self, v: &Motion) -> Force {
         Force {
-            moment: self.about_origin * v.angular + self.first_moment.cross(&v.linear),
+            moment: self.about_origin.times(&v.angular) + self.first_moment.cross(&v.linear),
             force: v.linear * self.mass + v.angular.cross(&self.first_moment),
         }
     }
@@ -206,22 +301,40 @@ impl MassProperties {
     #[inline]
     pub(crate) fn in_world(&self, X_WB: &Transform) -> Inertia {
         let center = X_WB.point(&self.center);
-        let rotated = X_WB.rotation * self.about_center * X_WB.rotation.transpose();
+        let rotated = Symmetric::rotated(&X_WB.rotation, &self.about_center);
         Inertia {
             mass: self.mass,
             first_moment: center * self.mass,
-            about_origin: rotated + steiner(self.mass, &center),
+            about_origin: rotated.plus(&Symmetric::of_point(self.mass, &center)),
         }
     }
 }
 
-/// Rotational inertia of a point mass at `r` about the origin: m (|r|² 1 − r rᵀ).
-#[inline]
+/// Rotational inertia of a point mass at `r` about the origin, as a full matrix.
 fn steiner(mass: f64, r: &Vector3<f64>) -> Matrix3<f64> {
-    let (x, y, z) = (r.x, r.y, r.z);
-    let (xy, yz, zx) = (-mass * x * y, -mass * y * z, -mass * z * x);
-    let (xx, yy, zz) = (mass * x * x, mass * y * y, mass * z * z);
-    Matrix3::new(yy + zz, xy, zx, xy, zz + xx, yz, zx, yz, xx + yy)
+    let Symmetric { diagonal: d, beside: b } = Symmetric::of_point(mass, r);
+    Matrix3::new(d.x, b.z, b.y, b.z, d.y, b.x, b.y, b.x, d.z)
 }
 
 const ZERO3: Vector3<f64> = Vector3::new(0.0, 0.0, 0.0);
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_coordinate_axis_turns_as_any_other_does() {
+        let rotation = rodrigues(&Vector3::new(0.48, -0.6, 0.64), 0.28, 0.96);
+        for axis in [Vector3::x(), -Vector3::x(), Vector3::y(), -Vector3::y(), Vector3::z(), -Vector3::z()] {
+            let quick = Axis::along(&axis);
+            assert!(matches!(quick, Axis::Coordinate(..)), "{axis}");
+            let general = Axis::Oblique(axis);
+            for angle in [-2.9, -0.3, 0.0, 1.2] {
+                let gap = quick.turned(&rotation, angle) - general.turned(&rotation, angle);
+                assert!(gap.abs().max() < 1e-15, "about {axis} by {angle}: {gap}");
+            }
+            let gap = quick.seen_from_outside(&rotation) - general.seen_from_outside(&rotation);
+            assert!(gap.abs().max() < 1e-15, "{axis}: {gap}");
+        }
+    }
+}

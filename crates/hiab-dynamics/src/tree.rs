@@ -6,8 +6,9 @@ use std::collections::HashMap;
 use nalgebra::{Matrix3, Rotation3, Vector3};
 use urdf_rs::JointType;
 
-use crate::error::{ModelError, TreeFault};
-use crate::spatial::{MassProperties, Transform};
+use crate::error::ModelError;
+use crate::fault::TreeFault;
+use crate::spatial::{Axis, MassProperties, Transform};
 use crate::urdf_text;
 
 /// A tree of bodies, each moved by one joint against its parent. Bodies and joints share their index; a parent's
@@ -29,8 +30,12 @@ pub(crate) struct TreeJoint {
     pub(crate) parent: Option<usize>,
     /// Pose of the joint's frame J in the parent body P.
     pub(crate) X_PJ: Transform,
+    /// Whether J is parallel to P, as it mostly is; that saves a product of rotations.
+    pub(crate) is_parallel: bool,
     /// Unit axis in J, and so in the body's own frame as well.
     pub(crate) axis: Vector3<f64>,
+    /// The same axis, for turning about it.
+    pub(crate) turning: Axis,
     /// Middle of the URDF's position limits, if it has any [rad or m].
     pub(crate) middle: Option<f64>,
     /// Mass of the body, links fixed to it included, in its own frame.
@@ -220,7 +225,8 @@ fn moving_joint(
         if joint.joint_type == JointType::Prismatic { JointKind::Prismatic } else { JointKind::Revolute };
     let limited = joint.joint_type != JointType::Continuous && joint.limit.lower < joint.limit.upper;
     let middle = limited.then_some(0.5 * (joint.limit.lower + joint.limit.upper));
-    Ok(TreeJoint { name: joint.name.clone(), kind, parent, X_PJ, axis, middle, mass })
+    let (is_parallel, turning) = (X_PJ.rotation == Matrix3::identity(), Axis::along(&axis));
+    Ok(TreeJoint { name: joint.name.clone(), kind, parent, X_PJ, is_parallel, axis, turning, middle, mass })
 }
 
 fn link_mass(link: &urdf_rs::Link) -> Result<MassProperties, ModelError> {

@@ -1,14 +1,17 @@
 //! Faults of a URDF's text, each with its line and the link or joint that it is in.
 //!
 //! `urdf-rs` reports such faults without either, so the text passes here first. Only what `tree` reads is looked
-//! at; elements that belong to neither a link nor a joint may be anything.
+//! at; elements that belong to neither a link nor a joint may be anything. An attribute that an element does not
+//! have is an error, since `urdf-rs` would pass over a misspelt `rpy` and leave a link unturned; so is an element
+//! whose name is nearly that of one which counts.
 
 use xml::EventReader;
 use xml::attribute::OwnedAttribute;
 use xml::common::Position;
 use xml::reader::XmlEvent;
 
-use crate::error::{ModelError, TextFault};
+use crate::error::ModelError;
+use crate::fault::TextFault;
 
 /// Form of an attribute's value.
 #[derive(Clone, Copy)]
@@ -40,6 +43,20 @@ const ATTRIBUTES: [(&str, &str, Form, bool); 19] = [
     ("limit", "effort", Form::Number, false),
     ("limit", "velocity", Form::Number, true),
 ];
+
+/// Attributes that URDF knows but `tree` does not read.
+const UNREAD: [(&str, &str); 1] = [("link", "type")];
+
+/// Elements that `tree` reads, and in which others.
+const ELEMENTS: [(&str, &[&str]); 3] = [
+    ("link", &["inertial"]),
+    ("joint", &["origin", "parent", "child", "axis", "limit", "mimic"]),
+    ("inertial", &["origin", "mass", "inertia"]),
+];
+
+/// Elements that URDF knows beside these; they may be nearly called like one that counts.
+const OTHER_ELEMENTS: [&str; 6] =
+    ["visual", "collision", "dynamics", "calibration", "safety_controller", "contact"];
 
 /// Elements that others must contain.
 const CHILDREN: [(&str, &str); 4] =
@@ -73,10 +90,13 @@ pub(crate) fn check(text: &str) -> Result<(), ModelError> {
                 }
                 let section =
                     if open.len() == 1 { Some(name.as_str()) } else { open.get(1).map(|o| &*o.name) };
-                if matches!(section, Some("link" | "joint"))
-                    && let Err(fault) = check_attributes(&name, &attributes)
-                {
-                    return fail(&owner, fault);
+                if matches!(section, Some("link" | "joint")) {
+                    let outer = open.last().map_or("", |outer| &outer.name);
+                    if let Err(fault) =
+                        check_attributes(&name, &attributes).and_then(|()| check_spelling(outer, &name))
+                    {
+                        return fail(&owner, fault);
+                    }
                 }
                 if let Some(parent) = open.last_mut() {
                     parent.children.push(name.clone());
@@ -120,7 +140,52 @@ fn check_attributes(element: &str, attributes: &[OwnedAttribute]) -> Result<(), 
             Form::Text | Form::Number | Form::Vector => {}
         }
     }
-    Ok(())
+    let known = || {
+        let read = ATTRIBUTES.iter().map(|entry| (entry.0, entry.1));
+        read.chain(UNREAD).filter(|entry| entry.0 == element).map(|entry| entry.1)
+    };
+    if known().next().is_none() {
+        return Ok(());
+    }
+    // Attributes of other namespaces are other programs'.
+    let mut own = attributes.iter().map(|a| &a.name).filter(|name| name.prefix.is_none());
+    match own.find(|name| known().all(|known| known != name.local_name)) {
+        Some(name) => {
+            let known = known().map(|name| format!("`{name}`")).collect::<Vec<_>>().join(", ");
+            let (element, attribute) = (element.to_owned(), name.local_name.clone());
+            Err(TextFault::UnknownAttribute { element, attribute, known })
+        }
+        None => Ok(()),
+    }
+}
+
+/// Refuses an element that is one slip away from one which `tree` reads there.
+fn check_spelling(outer: &str, element: &str) -> Result<(), TextFault> {
+    let Some((_, known)) = ELEMENTS.iter().find(|(name, _)| *name == outer) else { return Ok(()) };
+    if known.contains(&element) || OTHER_ELEMENTS.contains(&element) {
+        return Ok(());
+    }
+    match known.iter().find(|name| is_slip(element, name)) {
+        Some(near) => {
+            let (outer, child) = (outer.to_owned(), element.to_owned());
+            Err(TextFault::UnknownElement { element: outer, child, near })
+        }
+        None => Ok(()),
+    }
+}
+
+/// Whether `text` is `name` with one letter too many, too few or wrong, two swapped, or other capitals.
+fn is_slip(text: &str, name: &str) -> bool {
+    let text = text.to_ascii_lowercase();
+    let (t, n) = (text.as_bytes(), name.as_bytes());
+    let head = t.iter().zip(n).take_while(|(a, b)| a == b).count();
+    let (t, n) = (&t[head..], &n[head..]);
+    let tail = t.iter().rev().zip(n.iter().rev()).take_while(|(a, b)| a == b).count();
+    match (&t[..t.len() - tail], &n[..n.len() - tail]) {
+        ([] | [_], [] | [_]) => true,
+        ([a, b], [c, d]) => (a, b) == (d, c),
+        _ => false,
+    }
 }
 
 fn check_children(closed: &Open) -> Result<(), TextFault> {

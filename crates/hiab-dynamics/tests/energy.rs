@@ -4,7 +4,7 @@
 mod support;
 
 use hiab_dynamics::{CraneModel, Data, DynamicsError, PlantFile, Wrench};
-use support::{PLANTS, crane, max_abs, position_at, tolerance, velocity_at};
+use support::{PLANTS, crane, excavator, max_abs, position_at, tolerance, velocity_at};
 
 type Step = fn(
     &CraneModel,
@@ -150,4 +150,95 @@ fn friction_takes_exactly_the_energy_that_it_dissipates() {
         let error = (taken / lost - 1.0).abs();
         assert!(error < tolerance::TRAPEZOID, "{name}: lost {lost} J, missing {taken} J");
     }
+}
+
+/// Ten seconds of free motion at 2 kHz; gives the greatest drift of energy, relative to the greatest kinetic energy.
+fn long_drift(machine: &str, model: &CraneModel, position: &[f64], velocity: &[f64]) -> f64 {
+    let n = position.len();
+    let (mut position, mut velocity) = (position.to_vec(), velocity.to_vec());
+    let (mut data, effort) = (model.new_data(), vec![0.0; n]);
+    let (mut start, mut drift, mut greatest, mut travel) =
+        (None, 0.0_f64, 0.0_f64, vec![(f64::MAX, f64::MIN); n]);
+    for tick in 0..20_000 {
+        if let Err(error) = model.rk4(&mut data, &mut position, &mut velocity, &effort, None, 5e-4) {
+            panic!("{machine}: after {tick} ticks: {error}");
+        }
+        if tick % 10 == 0 {
+            let energy = conserved(model, &effort, &position, &velocity);
+            model.update_kinematics(&mut data, &position, &velocity).unwrap();
+            greatest = greatest.max(model.kinetic_energy(&data));
+            drift = drift.max((energy - *start.get_or_insert(energy)).abs());
+            for ((low, high), y) in travel.iter_mut().zip(&position) {
+                (*low, *high) = (low.min(*y), high.max(*y));
+            }
+        }
+    }
+    for (actuator, (low, high)) in model.actuators().iter().zip(travel) {
+        assert!(high - low > 1e-3, "{machine}: {} hardly moved, {low} to {high}", actuator.name());
+    }
+    drift / greatest
+}
+
+/// Free motion that stays where the loops close for 10 s: without gravity the cylinders creep through their range while
+/// the hinges turn freely. With it a hoist hangs below its hinge and swings.
+#[test]
+fn ten_seconds_of_free_motion_keep_the_energy() {
+    let weightless = |model: CraneModel| model.with_gravity([0.0; 3]).unwrap();
+    let (crane, excavator) = (weightless(crane()), weightless(excavator()));
+    let hoist = hoist().with_gravity([9.81, 0.0, 0.0]).unwrap();
+    let cases = [
+        (
+            "crane",
+            crane,
+            vec![0.0, 0.3, 0.3, 0.3, 0.1, 0.2, 0.3],
+            vec![0.02, 0.01, -0.01, -0.01, 0.5, 0.4, 0.8],
+        ),
+        ("excavator", excavator, vec![0.0, 0.2, 0.25, -1.0], vec![0.02, 0.01, -0.01, 0.1]),
+        ("hanging hoist", hoist, vec![0.22, 0.0], vec![0.1, 0.3]),
+    ];
+    for (name, model, position, velocity) in cases {
+        let drift = long_drift(name, &model, &position, &velocity);
+        assert!(drift < tolerance::LONG_ENERGY, "{name}: relative energy drift {drift:e}");
+        eprintln!("{name}: relative energy drift {drift:.1e} over 10 s");
+    }
+}
+
+/// A boom that points ahead in the middle of its cylinder's range, with a free hinge at its end.
+fn hoist() -> CraneModel {
+    let body = |name: &str, mass: f64, x: f64| {
+        format!(
+            r#"<link name="{name}"><inertial><origin xyz="{x} 0 0"/><mass value="{mass}"/>
+            <inertia ixx="0.5" ixy="0" ixz="0" iyy="1" iyz="0" izz="1"/></inertial></link>"#
+        )
+    };
+    let urdf = format!(
+        r#"<robot name="hoist"><link name="ground"/>{}{}{}{}<link name="half_a"/><link name="half_b"/>
+        <joint name="boom_joint" type="continuous"><parent link="ground"/><child link="boom"/><axis xyz="0 -1 0"/></joint>
+        <joint name="barrel_joint" type="continuous"><parent link="ground"/><child link="barrel"/>
+          <origin xyz="0 0 -0.8"/><axis xyz="0 -1 0"/></joint>
+        <joint name="cylinder_joint" type="prismatic"><parent link="barrel"/><child link="rod"/>
+          <origin xyz="0.7 0 0"/><axis xyz="1 0 0"/></joint>
+        <joint name="end_joint" type="continuous"><parent link="boom"/><child link="end"/>
+          <origin xyz="1 0 0"/><axis xyz="0 -1 0"/></joint>
+        <joint name="a" type="fixed"><parent link="rod"/><child link="half_a"/></joint>
+        <joint name="b" type="fixed"><parent link="boom"/><child link="half_b"/><origin xyz="0.5 0 0"/></joint></robot>"#,
+        body("boom", 40.0, 0.5),
+        body("barrel", 6.0, 0.3),
+        body("rod", 4.0, -0.2),
+        body("end", 10.0, 0.3),
+    );
+    let actuator = |joint: &str| {
+        format!(
+            "(joint: \"{joint}\", lower: 0.0, upper: 0.4, effort: 1.0, velocity: 1.0, acceleration: 1.0, jerk: 1.0, \
+             armature: 0.0),"
+        )
+    };
+    let loops = format!(
+        r#"(urdf: "", tip_link: "end", closed_loops: [(name: "hoist", frame_a: "half_a", frame_b: "half_b",
+        kind: Point3d, independent: "cylinder_joint", dependent: ["boom_joint", "barrel_joint"], branch: Positive)],
+        actuators: [{}{}])"#,
+        actuator("cylinder_joint"),
+        actuator("end_joint"),
+    );
+    CraneModel::from_urdf(&urdf, &loops).unwrap()
 }

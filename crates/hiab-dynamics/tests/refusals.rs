@@ -1,37 +1,9 @@
 //! Bad input ends in one clear line that names who, which field and why. The caller adds the name of the file.
-#![expect(clippy::unwrap_used, reason = "helpers of tests are tests too")]
 
 mod support;
 
 use hiab_dynamics::{CraneModel, DynamicsError, PlantFile, Wrench};
-use support::{LOOPS, PLANTS, URDF, crane, position_at};
-
-/// `text` with its only `from` replaced by `to`.
-#[track_caller]
-fn edited(text: &str, from: &str, to: &str) -> String {
-    assert_eq!(text.matches(from).count(), 1, "`{from}` must occur once, or the case tests nothing");
-    text.replacen(from, to, 1)
-}
-
-#[track_caller]
-fn check_line(case: &str, message: &str, expected: &str) {
-    assert_eq!(message.lines().count(), 1, "{case}: more than one line: {message}");
-    assert!(message.contains(expected), "{case}: `{message}` does not say `{expected}`");
-}
-
-/// Edits the URDF and checks what building the crane says.
-#[track_caller]
-fn check_urdf(from: &str, to: &str, expected: &str) {
-    let message = CraneModel::from_urdf(&edited(URDF, from, to), LOOPS).unwrap_err().to_string();
-    check_line(to, &message, expected);
-}
-
-/// Edits the loop file and checks what building the crane says.
-#[track_caller]
-fn check_loops(from: &str, to: &str, expected: &str) {
-    let message = CraneModel::from_urdf(URDF, &edited(LOOPS, from, to)).unwrap_err().to_string();
-    check_line(to, &message, expected);
-}
+use support::{LOOPS, PLANTS, URDF, check_line, check_loops, check_urdf, crane, edited, position_at};
 
 #[test]
 fn refuses_a_urdf_that_is_not_one() {

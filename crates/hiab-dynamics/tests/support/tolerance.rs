@@ -35,3 +35,13 @@ pub const ENERGY: f64 = 1e-9;
 /// the last moments before the lightest cylinder, 142 kg on 4000 N within 0.01 m/s, is at rest; less than a
 /// twentieth of the whole.
 pub const TRAPEZOID: f64 = 1e-4;
+
+/// Forward after inverse dynamics on any machine, relative to the largest acceleration: the bar of this crate.
+pub const IDENTITY: f64 = 1e-9;
+
+/// Power of the efforts against the change of energy by central differences, relative to the largest of the powers.
+pub const POWER: f64 = 1e-6;
+
+/// Energy after 10 s of free motion with the fourth-order method at 2 kHz, relative to the greatest kinetic energy:
+/// the bar of this crate.
+pub const LONG_ENERGY: f64 = 1e-6;
