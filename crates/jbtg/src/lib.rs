@@ -22,10 +22,12 @@ mod math;
 mod planner;
 mod pulse;
 mod roots;
+mod sampler;
 mod segment;
 mod shape;
 #[cfg(feature = "proptest")]
 pub mod strategies;
+mod synchronized;
 mod trajectory;
 
 pub use detour::{Detour, DetourCase, PulseKind};
@@ -34,6 +36,8 @@ pub use interval::Interval;
 pub use limits::{Limits, LimitsError, LimitsSpec, Quantity, SymmetricLimits};
 pub use planner::{Authority, MIN_AUTHORITY_SHARE, Planner, PlannerError, PlannerSpec, RampError};
 pub use pulse::Direction;
+pub use sampler::{Origin, Sample, Sampler};
 pub use segment::{Segment, State};
 pub use shape::{Shape, Timing};
+pub use synchronized::{Synchronized, SynchronizedError, SynchronizedStep};
 pub use trajectory::{ControlPoint, MAX_SEGMENTS, Trajectory};

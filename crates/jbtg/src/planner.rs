@@ -114,12 +114,7 @@ impl TryFrom<PlannerSpec> for Planner {
             check_authority(pulse, period, speed)?;
         }
         let detours = DetourLimits::new(up, down, velocity, shape, period);
-        let width = velocity.width();
-        let margin = increasing.reverse_velocity(shape, width).max(decreasing.reverse_velocity(shape, width));
-        let velocity = Interval::new(velocity.min + margin, velocity.max - margin);
-        if !(velocity.min < 0.0 && 0.0 < velocity.max) {
-            return Err(PlannerError::OutOfScale { name: "velocity margin", value: margin });
-        }
+        let velocity = tightened(velocity, (&increasing, &decreasing), shape)?;
         Ok(Self { spec, velocity, increasing, decreasing, shape: shape.constants(), detours })
     }
 }
@@ -208,7 +203,7 @@ impl Planner {
     ///
     /// # Errors
     /// [`RampError::Unreachable`] with the reachable velocities if `v2` is not one of them,
-    /// [`RampError::NotFinite`] for a NaN or an infinity.
+    /// [`RampError::NotFinite`] for a NaN or an infinity, given or as the final position.
     #[inline]
     pub fn ramp(&self, position: f64, v1: f64, v2: f64) -> Result<Trajectory, RampError> {
         check_finite(position, v1, v2)?;
@@ -216,6 +211,7 @@ impl Planner {
         if !reachable.contains(v2) {
             return Err(RampError::Unreachable { from: v1, to: v2, reachable });
         }
+        check_end(position + self.displacement(v1, v2))?;
         Ok(self.step(position, v1, v2))
     }
 
@@ -228,11 +224,33 @@ impl Planner {
     /// [`RampError::NotFinite`] for a NaN or an infinity.
     pub fn ramp_saturated(&self, position: f64, v1: f64, v2: f64) -> Result<Trajectory, RampError> {
         check_finite(position, v1, v2)?;
-        Ok(self.step(position, v1, self.reachable(v1).clamp(v2)))
+        let v2 = self.reachable(v1).clamp(v2);
+        check_end(position + self.displacement(v1, v2))?;
+        Ok(self.step(position, v1, v2))
     }
 
+    /// The same planner with both directions' rising and falling ramps of the given durations; see
+    /// [`PulseLimits::with_ramps`].
+    pub(crate) fn with_ramps(&self, ramp_up: f64, ramp_down: f64) -> Result<Self, PlannerError> {
+        let PlannerSpec { limits, shape, period, .. } = self.spec;
+        let [increasing, decreasing] =
+            [&self.increasing, &self.decreasing].map(|pulses| pulses.with_ramps(ramp_up, ramp_down));
+        let velocity = limits.velocity();
+        for pulse in [&increasing, &decreasing] {
+            check_authority(pulse, period, velocity.max.min(-velocity.min))?;
+        }
+        let velocity = tightened(velocity, (&increasing, &decreasing), shape)?;
+        Ok(Self { velocity, increasing, decreasing, ..*self })
+    }
+
+    /// The step of the stepwise braking policy: towards zero by as much as one period allows.
+    pub(crate) fn brake(&self, position: f64, velocity: f64) -> Trajectory {
+        self.step(position, velocity, self.reachable(velocity).clamp(0.0))
+    }
+
+    /// The step from `position` and `v1` to the reachable velocity `v2`.
     #[inline]
-    fn step(&self, position: f64, v1: f64, v2: f64) -> Trajectory {
+    pub(crate) fn step(&self, position: f64, v1: f64, v2: f64) -> Trajectory {
         let pulse = self.signed_pulse(v2 - v1);
         let end = (position + self.displacement(v1, v2), v2);
         Trajectory::from_pulse(position, v1, (pulse, self.spec.period), end, &self.shape)
@@ -262,6 +280,22 @@ impl Planner {
             Direction::Increasing => &self.increasing,
             Direction::Decreasing => &self.decreasing,
         }
+    }
+}
+
+/// The velocity limits less what the shape's velocity overshoots.
+fn tightened(
+    limits: Interval,
+    (increasing, decreasing): (&PulseLimits, &PulseLimits),
+    shape: Shape,
+) -> Result<Interval, PlannerError> {
+    let width = limits.width();
+    let margin = increasing.reverse_velocity(shape, width).max(decreasing.reverse_velocity(shape, width));
+    let velocity = Interval::new(limits.min + margin, limits.max - margin);
+    if velocity.min < 0.0 && 0.0 < velocity.max {
+        Ok(velocity)
+    } else {
+        Err(PlannerError::OutOfScale { name: "velocity margin", value: margin })
     }
 }
 
@@ -296,6 +330,15 @@ fn check_finite(position: f64, v1: f64, v2: f64) -> Result<(), RampError> {
         return Ok(());
     };
     Err(RampError::NotFinite { name, value })
+}
+
+#[inline]
+fn check_end(position: f64) -> Result<(), RampError> {
+    if position.is_finite() {
+        Ok(())
+    } else {
+        Err(RampError::NotFinite { name: "final position", value: position })
+    }
 }
 
 /// Refuses periods that leave next to nothing, and limits whose quintics would overflow or underflow.

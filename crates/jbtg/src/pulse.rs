@@ -100,6 +100,29 @@ impl PulseLimits {
         if excess > 1.0 {
             (ramp_up, ramp_down) = (ramp_up / excess, ramp_down / excess);
         }
+        let allowed = bounds.along * period;
+        Self::from_ramps(acceleration, (ramp_up, ramp_down), allowed, constants.displacement, timing, period)
+    }
+
+    /// The largest pulse with ramps of the given durations, which fit into the period and are no shorter than those
+    /// of `self`, unless that is because they do not fit.
+    pub(crate) fn with_ramps(&self, ramp_up: f64, ramp_down: f64) -> Self {
+        let (up, down) = (ramp_up / self.ramp_up, ramp_down / self.ramp_down);
+        let acceleration = self.acceleration * up.min(down).min(1.0); // shorter ramps, less jerk's worth
+        let allowed = self.velocity_change / self.share;
+        let ramps = (ramp_up, ramp_down);
+        Self::from_ramps(acceleration, ramps, allowed, self.displacement, self.timing, self.period)
+    }
+
+    /// `allowed` is the velocity change that the acceleration limit alone would allow in one period.
+    fn from_ramps(
+        acceleration: f64,
+        (ramp_up, ramp_down): (f64, f64),
+        allowed: f64,
+        displacement: f64,
+        timing: Timing,
+        period: f64,
+    ) -> Self {
         let width = period - 0.5 * (ramp_up + ramp_down);
         let cruise = (period - ramp_up - ramp_down).max(0.0);
         let largest = Pulse { acceleration: 1.0, ramp_up, cruise, ramp_down, rest: 0.0 };
@@ -110,15 +133,15 @@ impl PulseLimits {
             ramp_up,
             ramp_down,
             velocity_change: acceleration * width,
-            share: acceleration * width / (bounds.along * period),
+            share: acceleration * width / allowed,
             period,
             stretched_gain: 1.0 / width,
-            stretched_lag: largest.moment(constants.displacement) / width,
+            stretched_lag: largest.moment(displacement) / width,
             ramps_only,
             per_ramps_only: 1.0 / ramps_only,
             per_acceleration: 1.0 / acceleration,
-            scaled_lag: 2.0 * ramps.moment(constants.displacement) / (ramp_up + ramp_down),
-            displacement: constants.displacement,
+            scaled_lag: 2.0 * ramps.moment(displacement) / (ramp_up + ramp_down),
+            displacement,
             timing,
         }
     }

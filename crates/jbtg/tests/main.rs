@@ -3,7 +3,10 @@
 mod optimum;
 mod paper;
 mod properties;
+mod sampler;
 mod serde_form;
+mod support;
+mod synchronized;
 mod tolerance;
 mod totality;
 mod waypoint;

@@ -18,3 +18,7 @@ pub(crate) const CLOSED_FORM: f64 = 1e-13;
 
 /// A number that DESIGN or the paper prints with three significant digits: half a unit of the last.
 pub(crate) const THREE_DIGITS: f64 = 5e-3;
+
+/// Distance of a velocity vector from the straight line that it should move on, in units of 2⁻⁵² times its joints' speeds
+/// and velocity changes: a dozen roundings of each velocity.
+pub(crate) const LINE_ULPS: f64 = 16.0;

@@ -50,9 +50,9 @@ impl core::error::Error for PlannerError {}
 /// Why a step was refused.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum RampError {
-    /// An argument is NaN or infinite.
+    /// An argument, or the final position, is NaN or infinite.
     NotFinite {
-        /// The argument.
+        /// What it is.
         name: &'static str,
         /// Its value.
         value: f64,
