@@ -93,6 +93,10 @@ impl TryFrom<PlannerSpec> for Planner {
             return Err(PlannerError::Period { period });
         }
         let (velocity, acceleration, jerk) = (limits.velocity(), limits.acceleration(), limits.jerk());
+        let farthest = period * velocity.width();
+        if !farthest.is_finite() {
+            return Err(PlannerError::OutOfScale { name: "distance at full speed", value: farthest });
+        }
         let speed = velocity.max.min(-velocity.min);
         let up = Bounds {
             along: acceleration.max,

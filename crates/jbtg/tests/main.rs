@@ -1,7 +1,9 @@
 //! Integration tests: every file in this folder is a module of this one program.
 
+mod no_allocation;
 mod optimum;
 mod paper;
+mod peers;
 mod properties;
 mod sampler;
 mod serde_form;

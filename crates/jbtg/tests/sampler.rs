@@ -9,7 +9,8 @@ use proptest::prelude::*;
 use crate::support::{paper_planner, within};
 
 fn sampler(planner: Planner, ticks: u32, position: f64) -> Sampler {
-    Sampler::at_rest(planner, NonZeroU32::new(ticks).unwrap(), position).unwrap()
+    let ticks = NonZeroU32::new(ticks).expect("some ticks");
+    Sampler::at_rest(planner, ticks, position).expect("a finite position")
 }
 
 proptest! {
