@@ -25,6 +25,8 @@ mod roots;
 mod sampler;
 mod segment;
 mod shape;
+mod standstill;
+mod stop;
 #[cfg(feature = "proptest")]
 pub mod strategies;
 mod synchronized;
@@ -39,5 +41,6 @@ pub use pulse::Direction;
 pub use sampler::{Origin, Sample, Sampler};
 pub use segment::{Segment, State};
 pub use shape::{Shape, Timing};
+pub use stop::{Stop, StopError, StopStatus};
 pub use synchronized::{Synchronized, SynchronizedError, SynchronizedStep};
 pub use trajectory::{ControlPoint, MAX_SEGMENTS, Trajectory};

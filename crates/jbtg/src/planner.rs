@@ -279,6 +279,13 @@ impl Planner {
         if change < 0.0 { (&self.decreasing, -1.0, -change) } else { (&self.increasing, 1.0, change) }
     }
 
+    /// The larger peak acceleration of both directions' largest pulses, and the shortest of their ramps \[s\].
+    pub(crate) fn largest_pulse(&self) -> (f64, f64) {
+        let (up, down) = (&self.increasing, &self.decreasing);
+        let ramp = up.ramp_up.min(up.ramp_down).min(down.ramp_up).min(down.ramp_down);
+        (up.acceleration.max(down.acceleration), ramp)
+    }
+
     const fn pulses(&self, direction: Direction) -> &PulseLimits {
         match direction {
             Direction::Increasing => &self.increasing,

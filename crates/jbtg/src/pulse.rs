@@ -17,7 +17,7 @@ pub enum Direction {
 pub(crate) const MIN_RAMP_SHARE: f64 = 1e-6;
 
 /// Relative distance kept from the acceleration and jerk bounds, so that rounding never crosses them.
-const GUARD: f64 = 1e-14;
+pub(crate) const GUARD: f64 = 1e-14;
 
 /// Magnitudes that bound the pulses of one direction, and what follows from them.
 ///

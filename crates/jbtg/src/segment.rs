@@ -72,7 +72,7 @@ impl Segment {
         self.start
     }
 
-    /// Duration \[s\], > 0.
+    /// Duration \[s\], > 0; 0 only where a stop starts at rest.
     #[must_use]
     pub const fn duration(&self) -> f64 {
         self.duration
@@ -82,6 +82,17 @@ impl Segment {
     #[must_use]
     pub const fn coefficients(&self) -> [f64; 6] {
         self.coefficients
+    }
+
+    /// What is left of the segment after `time`, 0 < `time` < duration.
+    pub(crate) fn from(&self, time: f64) -> Self {
+        let State { position, velocity, acceleration, jerk } = self.state_at(time);
+        let [.., b4, b5] = self.coefficients;
+        Self {
+            start: self.start + time,
+            duration: self.duration - time,
+            coefficients: [position, velocity, 0.5 * acceleration, jerk / 6.0, b4 + 5.0 * time * b5, b5],
+        }
     }
 
     /// State `time` after the segment's own start \[s\]; the polynomial as it is, also outside the segment.

@@ -84,6 +84,15 @@ impl Trajectory {
         }
     }
 
+    /// This one, ending at `end` after `duration`; without any segment so far it rests there for no time.
+    pub(crate) fn finish(mut self, duration: f64, end: State) -> Self {
+        (self.duration, self.end) = (duration, end);
+        if self.count == 0 {
+            self.push(Segment { coefficients: [end.position, 0.0, 0.0, 0.0, 0.0, 0.0], ..Segment::EMPTY });
+        }
+        self
+    }
+
     /// The same motion in the opposite direction, bit for bit.
     pub(crate) fn mirrored(mut self) -> Self {
         for segment in &mut self.segments[..self.count] {
@@ -110,7 +119,7 @@ impl Trajectory {
         }
     }
 
-    /// Duration \[s\]: the planner's period, exactly.
+    /// Duration \[s\]: the planner's period, exactly, or a stop's own.
     #[must_use]
     pub const fn duration(&self) -> f64 {
         self.duration

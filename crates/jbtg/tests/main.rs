@@ -7,6 +7,8 @@ mod peers;
 mod properties;
 mod sampler;
 mod serde_form;
+mod standstill;
+mod stop;
 mod support;
 mod synchronized;
 mod tolerance;

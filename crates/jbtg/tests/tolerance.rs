@@ -22,3 +22,7 @@ pub(crate) const THREE_DIGITS: f64 = 5e-3;
 /// Distance of a velocity vector from the straight line that it should move on, in units of 2⁻⁵² times its joints' speeds
 /// and velocity changes: a dozen roundings of each velocity.
 pub(crate) const LINE_ULPS: f64 = 16.0;
+
+/// Jerk left where a ramp is within rounding of its end, relative to the jerk limits' width: 1 − (3u² − 2u³) = 2⁻⁵² at
+/// 1 − u = 1e-8, where the jerk is 4e-8 of its largest.
+pub(crate) const JERK_LEFT: f64 = 1e-7;
