@@ -1,62 +1,228 @@
 //! Limits that the interior of a step crosses although both its ends keep them.
 
+use crate::math::sqrt;
+use crate::side::Turning;
 use crate::solve::Approach;
+
+/// Bound of the share of a ramp, and so of a period, in which the sine's quintic moves against its own direction.
+const REVERSAL_SHARE: f64 = 0.06;
+
+/// Most Newton steps; each that leaves its bracket halves it.
+const ROUNDS: u32 = 60;
 
 impl Approach<'_> {
     /// Least velocity whose step does not come nearer to the limit, anywhere inside it, than braking at once would
     /// or than the guard allows [rad/s or m/s]. At most the braking velocity.
     ///
     /// Two things can happen. A ramp that starts against its own direction
-    /// ([`Shape::SineQuintic`](jbtg::Shape)) first moves towards the limit, by a distance proportional to the
-    /// velocity change at most. And with [`Timing::Fastest`](jbtg::Timing) a step that changes the velocity's sign
-    /// starts the more slowly the larger it is, so that it turns later than a step to zero; the
-    /// peak first falls and then grows with the velocity change, so what is admissible is an interval that ends at
-    /// zero.
+    /// ([`Shape::SineQuintic`](jbtg::Shape)) first moves towards the limit. And with
+    /// [`Timing::Fastest`](jbtg::Timing) a step that changes the velocity's sign starts the more slowly the larger it
+    /// is, so that it turns later than a step to zero.
+    #[inline]
     pub(crate) fn min_velocity(&self) -> f64 {
         let (braking, lowest) = (self.braking, self.reachable.min);
-        if braking.interior_is_free || lowest >= self.brake {
+        let turns_late = self.velocity > 0.0 && !braking.stretched;
+        if !turns_late && braking.reverse == 0.0 || lowest >= self.brake {
             return lowest;
         }
         let kept = braking.limit - 0.5 * braking.guard;
         let farthest =
             self.position + self.velocity.max(0.0) * braking.period + braking.reverse * braking.step;
         if farthest <= kept {
-            return lowest;
+            lowest
+        } else if turns_late {
+            self.least_turning(kept)
+        } else {
+            self.least_reversing(kept)
         }
-        let stop = self.position + self.braking.distance(self.planner, self.velocity);
-        // From outside the way back must not wait for the shape's overshoot to fit.
-        let overshoot = if self.is_outside() { braking.reverse * braking.step } else { 0.0 };
-        let allowed = kept.max(stop + overshoot.max(1e-13 * braking.width));
-        if braking.stretched || self.velocity <= 0.0 {
-            let anchor = self.brake.min(self.velocity);
-            return lowest.max(anchor - (allowed - stop) / braking.reverse);
-        }
-        self.bisect_peak(lowest, allowed)
     }
 
-    /// Bisects between braking, which is admissible, and `lowest`.
-    fn bisect_peak(&self, lowest: f64, allowed: f64) -> f64 {
-        if self.peak(lowest) <= allowed {
+    /// Least velocity whose step's start, against its own direction, stays within `kept` or, from rest near the limit
+    /// or beyond it, within what the shape cannot do without.
+    ///
+    /// The reversal is over within a twentieth of the ramp and goes at most `reverse` per velocity change beyond motion
+    /// at the first velocity. After it a larger change lies pointwise below a smaller one.
+    fn least_reversing(&self, kept: f64) -> f64 {
+        let braking = self.braking;
+        let needed = match (self.is_outside(), self.velocity > 0.0) {
+            (true, true) => 0.0,
+            // The way back must not wait for the overshoot to fit.
+            (true, false) => braking.reverse * braking.step,
+            (false, _) => 1e-13 * braking.width,
+        };
+        let room = (kept - self.position).max(braking.distance(self.velocity) + needed);
+        let reached = REVERSAL_SHARE * braking.period * self.velocity.max(0.0);
+        let change = (room - reached) / braking.reverse;
+        (self.velocity - change).max(self.reachable.min).min(self.brake)
+    }
+
+    /// Least velocity whose step turns before `kept`, or no later than braking at once, where `velocity` > 0 and the
+    /// timing is [`Timing::Fastest`](jbtg::Timing).
+    ///
+    /// As the change grows from `velocity` on, the turning point first recedes and then advances, until the step has a
+    /// cruise; from there on the way to the turning point is the same for all. So the admissible changes are those up to the
+    /// one at which the turning point, as it advances, meets what is allowed. If braking itself has a cruise no
+    /// turning point advances.
+    fn least_turning(&self, kept: f64) -> f64 {
+        let (braking, lowest) = (self.braking, self.reachable.min);
+        if self.velocity >= braking.brake.ramps_only {
             return lowest;
         }
-        let (mut good, mut bad) = (self.brake, lowest);
-        for _ in 0..40 {
-            let middle = 0.5 * (good + bad);
-            if self.peak(middle) <= allowed {
-                good = middle;
-            } else {
-                bad = middle;
+        let travel = (kept - self.position).max(braking.distance(self.velocity));
+        let turning = &braking.turning;
+        // A·T²-like scale: every turning point is a multiple of it that depends on where in the pulse it lies.
+        let scale = self.velocity * sqrt(self.velocity * turning.rising_per_acceleration);
+        let change = self.velocity * turning.change(travel / scale);
+        if change < braking.brake.ramps_only {
+            (self.velocity - change).max(lowest).min(self.brake)
+        } else {
+            lowest
+        }
+    }
+}
+
+impl Turning {
+    /// The largest velocity change of a step without a cruise that turns within `travel`, as a multiple of the velocity
+    /// at its start.
+    ///
+    /// `travel` is in multiples of v·√(v·T/A) with v that velocity and T/A the rising ramp's duration per acceleration, and at
+    /// least what braking to zero covers.
+    fn change(&self, travel: f64) -> f64 {
+        let ramp = Ramp::at(self.shape, 1.0);
+        if travel >= ramp.advance / (ramp.gain * sqrt(ramp.gain)) {
+            self.change_turning_while_rising(travel)
+        } else {
+            self.change_turning_while_falling(travel)
+        }
+    }
+
+    /// The turning point lies at u in the rising ramp: there, v is what the ramp has taken away, so its size follows from
+    /// u, and the travel is a/b^1.5 with the two polynomials of [`Ramp`]. It grows as u falls.
+    fn change_turning_while_rising(&self, travel: f64) -> f64 {
+        let value = |u: f64| {
+            let ramp = Ramp::at(self.shape, u);
+            if ramp.gain <= 0.0 {
+                return (f64::INFINITY, 1.0, ramp);
             }
-        }
-        good
+            let excess = ramp.advance - travel * ramp.gain * sqrt(ramp.gain);
+            (excess, ramp.advance_slope - 1.5 * ramp.advance * ramp.gain_slope / ramp.gain, ramp)
+        };
+        // Where the smoothstep's travel would be 0.75/√u, as it is for small u.
+        let start = (0.5625 / (travel * travel)).min(1.0);
+        let u = newton(start, true, |u| {
+            let (excess, slope, _) = value(u);
+            (excess, slope)
+        });
+        let gain = Ramp::at(self.shape, u).gain;
+        0.5 * (1.0 + self.ratio) / (u * u * gain)
     }
 
-    /// Greatest position within the step to `velocity`; infinite if there is no such step.
-    fn peak(&self, velocity: f64) -> f64 {
-        let sign = self.braking.sign;
-        match self.planner.ramp(sign * self.position, sign * self.velocity, sign * velocity) {
-            Ok(step) => self.braking.mirrored(step.extrema().position).max,
-            Err(_) => f64::INFINITY,
+    /// The turning point lies at u before the end of the falling ramp, in shares of its duration.
+    fn change_turning_while_falling(&self, travel: f64) -> f64 {
+        let u = newton(1.0, false, |u| {
+            let (taken, advance, slope) = self.while_falling(u);
+            (advance - travel * taken * sqrt(taken), slope)
+        });
+        0.5 * (1.0 + self.ratio) / self.while_falling(u).0
+    }
+
+    /// With the turning point at u before the end of the falling ramp: m and N of Lemma 4 in `docs/guarantee.md`, and the
+    /// derivative of N/m^1.5 times m^1.5.
+    fn while_falling(&self, u: f64) -> (f64, f64, f64) {
+        let [c3, c4, c5] = self.shape;
+        let displacement = c3 + c4 + c5;
+        let (r, whole) = (self.ratio, 1.0 + self.ratio);
+        let left = u * u * Ramp::at(self.shape, u).gain; // r times this of the change comes after the turning point
+        let left_slope = u * (6.0 * c3 + u * (12.0 * c4 + u * (20.0 * c5)));
+        let gone = u * u * u * (c3 + u * (c4 + u * c5));
+        let taken = 0.5 * whole - r * left;
+        let lag = whole * ((0.5 - displacement) + displacement * r);
+        let advance = lag - r * left * (whole - r * u) - r * r * gone;
+        (taken, advance, r * left_slope * (1.5 * advance / taken - (whole - r * u)))
+    }
+}
+
+/// The ramp's polynomials at u: with v(u) the velocity that it has taken away and p(u) the position, `gain` is v/u² and
+/// `advance` (u·v − p)/u³; with their derivatives.
+#[derive(Clone, Copy, Debug)]
+struct Ramp {
+    gain: f64,
+    gain_slope: f64,
+    advance: f64,
+    advance_slope: f64,
+}
+
+impl Ramp {
+    #[inline]
+    fn at([c3, c4, c5]: [f64; 3], u: f64) -> Self {
+        Self {
+            gain: 3.0 * c3 + u * (4.0 * c4 + u * (5.0 * c5)),
+            gain_slope: 4.0 * c4 + u * (10.0 * c5),
+            advance: 2.0 * c3 + u * (3.0 * c4 + u * (4.0 * c5)),
+            advance_slope: 3.0 * c4 + u * (8.0 * c5),
+        }
+    }
+}
+
+/// The root in (0, 1] of `function`, which gives excess and slope, by Newton steps from `start` within a bracket; the excess
+/// is positive below the root if `falls`, else above it.
+#[inline]
+fn newton(start: f64, falls: bool, function: impl Fn(f64) -> (f64, f64)) -> f64 {
+    let (mut low, mut high, mut u) = (0.0, 1.0, start);
+    for _ in 0..ROUNDS {
+        let (excess, slope) = function(u);
+        if (excess > 0.0) == falls {
+            low = u
+        } else {
+            high = u
+        }
+        let next = u - excess / slope;
+        let inside = low < next && next < high;
+        let next = if inside { next } else { 0.5 * (low + high) };
+        if (next - u).abs() <= 2.0 * f64::EPSILON * u {
+            return next;
+        }
+        u = next;
+    }
+    u
+}
+
+#[cfg(test)]
+mod tests {
+    use jbtg::Shape;
+
+    use super::{REVERSAL_SHARE, Ramp, Turning};
+
+    fn position([c3, c4, c5]: [f64; 3], u: f64) -> f64 {
+        u * u * u * (c3 + u * (c4 + u * c5))
+    }
+
+    #[test]
+    fn the_reversal_is_over_within_its_share() {
+        let shape = Shape::SineQuintic.coefficients();
+        assert!(position(shape, 0.8 * REVERSAL_SHARE) < 0.0 && position(shape, REVERSAL_SHARE) > 0.0);
+    }
+
+    /// Lemma 4 of `docs/guarantee.md`: as the change grows, the turning point first recedes, then advances.
+    #[test]
+    fn a_turning_point_recedes_once_and_then_advances_as_the_change_grows() {
+        for shape in [Shape::Smoothstep, Shape::SineQuintic].map(Shape::coefficients) {
+            for ratio in [0.1, 0.2, 0.5, 0.77, 1.0, 1.5, 4.0, 10.0] {
+                let turning = Turning { shape, ratio, rising_per_acceleration: 1.0 };
+                // But for the sine's reversal, which braking has as well.
+                let falling = (60..=1000).map(|i| turning.while_falling(f64::from(i) / 1000.0));
+                let heights: Vec<f64> =
+                    falling.map(|(taken, advance, _)| advance / taken.powf(1.5)).collect();
+                let rises: Vec<bool> = heights.windows(2).map(|pair| pair[1] > pair[0]).collect();
+                let turns = rises.windows(2).filter(|pair| pair[0] != pair[1]).count();
+                assert!(rises[rises.len() - 1] && turns <= 1, "{shape:?} {ratio}: {turns} turns");
+                let rising = (1..=1000).rev().map(|i| Ramp::at(shape, f64::from(i) / 1000.0));
+                let heights: Vec<f64> = rising
+                    .take_while(|ramp| ramp.gain > 0.0)
+                    .map(|ramp| ramp.advance / ramp.gain.powf(1.5))
+                    .collect();
+                assert!(heights.windows(2).all(|pair| pair[1] > pair[0]), "{shape:?}");
+            }
         }
     }
 }

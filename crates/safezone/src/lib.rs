@@ -13,8 +13,10 @@
 #[cfg(feature = "build")]
 mod builder;
 mod command;
+mod curve;
 mod hash;
 mod interior;
+mod lag;
 mod math;
 mod range;
 #[cfg(feature = "build")]

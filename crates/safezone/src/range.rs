@@ -23,8 +23,8 @@ pub struct SafeRange {
 pub enum RangeStatus {
     /// Every limit is kept, now and for ever.
     Safe,
-    /// The velocity is beyond its limit. The range leads back inside as fast as one period allows; position
-    /// limits are kept.
+    /// The velocity is beyond [`Planner::velocity`](jbtg::Planner::velocity): its limit, less what the shape's own
+    /// velocity overshoots. The range leads back inside as fast as one period allows; position limits are kept.
     VelocityOutside,
     /// The position is inside its limits, but no braking stops the joint there. The range holds nothing that goes
     /// further out than braking at once.

@@ -1,7 +1,8 @@
 //! One position limit, in coordinates in which it is the upper one.
 
-use jbtg::{Direction, Interval, Planner, Shape, Timing};
+use jbtg::{Direction, Interval, Planner, Timing};
 
+use crate::lag::Lag;
 use crate::math::sqrt;
 
 /// A position limit of a joint.
@@ -23,10 +24,18 @@ pub(crate) struct Braking {
     pub(crate) limit: f64,
     /// Velocity that one period takes away, Δ [rad/s or m/s].
     pub(crate) step: f64,
+    per_step: f64,
     /// The period \[s\].
     pub(crate) period: f64,
-    /// Change at which a step's distance may have a concave kink, see [`Braking::kink_depth`] [rad/s or m/s].
-    kink: f64,
+    per_period: f64,
+    /// 2/(Δ·T) [1 per rad or m].
+    growth: f64,
+    /// Full braking steps from the largest velocity.
+    most_steps: f64,
+    /// Lag of steps away from the limit: braking.
+    pub(crate) brake: Lag,
+    /// Lag of steps towards the limit.
+    pub(crate) climb: Lag,
     /// Displacement of the step from Δ to 0 [rad or m].
     last_step: f64,
     /// Excess of a step's interior over its ends, per velocity change \[s\]; 0 for the smoothstep.
@@ -41,24 +50,37 @@ pub(crate) struct Braking {
     pub(crate) tolerance: f64,
     /// Distance that a step by choice keeps from the limit [rad or m]; braking may use it up.
     pub(crate) guard: f64,
-    /// Whether a larger velocity change lies pointwise beyond a smaller one, so that interiors need no check.
-    pub(crate) interior_is_free: bool,
     /// Whether velocity follows one time course per direction ([`Timing::Stretched`]).
     pub(crate) stretched: bool,
+    /// Where a step that turns around within its period turns.
+    pub(crate) turning: Turning,
+    /// Up to here no step within the velocity limits needs to know the position [rad or m].
+    free_until: f64,
+}
+
+/// Numbers of a step that turns around within its period: its shape and its two ramps.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Turning {
+    /// Coefficients of the ramp, see [`Shape::coefficients`](jbtg::Shape::coefficients).
+    pub(crate) shape: [f64; 3],
+    /// Duration of the falling ramp per duration of the rising one.
+    pub(crate) ratio: f64,
+    /// Duration of the rising ramp per acceleration [s² per rad/s or m/s].
+    pub(crate) rising_per_acceleration: f64,
 }
 
 impl Braking {
     pub(crate) fn new(planner: &Planner, side: Side) -> Self {
-        let (sign, direction) = match side {
-            Side::Upper => (1.0, Direction::Decreasing),
-            Side::Lower => (-1.0, Direction::Increasing),
+        let (sign, away, towards) = match side {
+            Side::Upper => (1.0, Direction::Decreasing, Direction::Increasing),
+            Side::Lower => (-1.0, Direction::Increasing, Direction::Decreasing),
         };
         let position = planner.limits().position();
         let (limit, velocity) = match side {
             Side::Upper => (position.max, planner.velocity().max),
             Side::Lower => (-position.min, -planner.velocity().min),
         };
-        let authority = planner.authority(direction);
+        let authority = planner.authority(away);
         let (step, period) = (authority.velocity_change, planner.period());
         let width = position.width();
         let scale = position.min.abs().max(position.max.abs()).max(width);
@@ -66,24 +88,44 @@ impl Braking {
         let steps = (velocity / step).min(sqrt(2.0 * width / (step * period)));
         let rounding = f64::EPSILON * (steps + 16.0) * scale;
         let reverse = authority.reverse_travel;
-        let smooth = planner.spec().shape == Shape::Smoothstep;
+        let shape = planner.spec().shape;
         let stretched = planner.spec().timing == Timing::Stretched;
-        Self {
+        let brake = Lag::new(planner, away);
+        let (up, down) = (authority.ramp_up, authority.ramp_down);
+        let turning = Turning {
+            shape: shape.coefficients(),
+            ratio: down / up,
+            rising_per_acceleration: 0.5 * up * (up + down) / authority.ramps_only,
+        };
+        let mut braking = Self {
             sign,
             limit,
             step,
+            per_step: 1.0 / step,
             period,
-            kink: authority.ramps_only,
-            last_step: sign * planner.displacement(sign * step, 0.0),
+            per_period: 1.0 / period,
+            growth: 2.0 / (step * period),
+            most_steps: (velocity / step) as i64 as f64,
+            last_step: brake.at(step),
+            brake,
+            climb: Lag::new(planner, towards),
             reverse,
             velocity,
             width,
             rounding,
             tolerance: rounding.min(0.5e-12 * width),
             guard: rounding + 2.0 * reverse * step,
-            interior_is_free: smooth && stretched,
             stretched,
-        }
+            turning,
+            free_until: f64::NEG_INFINITY,
+        };
+        braking.set_longest_stop(braking.distance(velocity));
+        braking
+    }
+
+    /// Takes note of the distance that the largest velocity needs [rad or m].
+    pub(crate) fn set_longest_stop(&mut self, distance: f64) {
+        self.free_until = self.limit - self.guard - (self.velocity * self.period + distance);
     }
 
     /// Distance of the stepwise braking policy from `velocity`, in closed form [rad or m]; 0 for a velocity away
@@ -92,36 +134,89 @@ impl Braking {
     /// With n = ⌊v/Δ⌋ full steps and the remainder r: D = Δ·T·n(n−1)/2 + n·d(Δ) + n·T·r + d(r), where d(r) is the
     /// displacement of the last step, from r to 0. For a shape whose interior exceeds its ends that excess is
     /// added.
-    pub(crate) fn distance(&self, planner: &Planner, velocity: f64) -> f64 {
+    #[inline]
+    pub(crate) fn distance(&self, velocity: f64) -> f64 {
         if velocity <= 0.0 {
             return 0.0;
         }
-        let n = (velocity / self.step) as u64 as f64;
+        let n = self.full_steps(velocity);
         let r = (velocity - n * self.step).max(0.0);
-        let last = self.sign * planner.displacement(self.sign * r, 0.0);
         n * (0.5 * (n - 1.0) * self.step * self.period + self.last_step + self.period * r)
-            + last
+            + self.brake.at(r)
             + self.reverse * velocity.min(self.step)
+    }
+
+    /// Derivative of [`Braking::distance`] \[s\].
+    #[inline]
+    pub(crate) fn distance_slope(&self, velocity: f64) -> f64 {
+        if velocity <= 0.0 {
+            return 0.0;
+        }
+        let n = self.full_steps(velocity);
+        n * self.period + self.brake.slope_at((velocity - n * self.step).max(0.0))
+    }
+
+    /// Braking steps that take Δ in full, from `velocity` ≥ 0 on.
+    #[inline]
+    pub(crate) fn full_steps(&self, velocity: f64) -> f64 {
+        (velocity * self.per_step) as i64 as f64
+    }
+
+    /// Knot `n` of the distance, n whole: its velocity, its distance, and the slope from there on \[s\]. Exact with
+    /// [`Timing::Stretched`].
+    #[inline]
+    pub(crate) fn segment(&self, n: f64) -> (f64, f64, f64) {
+        let (overshoot, overshoot_slope) =
+            if n > 0.0 { (self.reverse * self.step, 0.0) } else { (0.0, self.reverse) };
+        let distance = n * (0.5 * (n - 1.0) * self.step * self.period + self.last_step) + overshoot;
+        (n * self.step, distance, n * self.period + self.brake.mean + overshoot_slope)
+    }
+
+    /// The last knot n at which `gain`·v plus the distance is within `rest` > 0, but for rounding; at most the one below
+    /// the velocity limit. Exact with [`Timing::Stretched`].
+    ///
+    /// With g = `gain` + l − T/2 that sum is Δ·(T·n²/2 + g·n) at knots, and the overshoot.
+    #[inline]
+    pub(crate) fn steps_within(&self, gain: f64, rest: f64) -> f64 {
+        let vertex = (gain + self.brake.mean) * self.per_period - 0.5;
+        let beyond = (rest - self.reverse * self.step).max(0.0) * self.growth;
+        let steps = sqrt(vertex * vertex + beyond) - vertex;
+        (steps.min(self.most_steps) as i64) as f64
+    }
+
+    /// Whether every step within the velocity limits keeps the position limit and leaves room to brake.
+    #[inline]
+    pub(crate) fn is_far(&self, position: f64) -> bool {
+        position <= self.free_until
     }
 
     /// How far the distance rises above its linear interpolation between knots `spacing` apart [rad or m].
     ///
     /// Within a braking step it is convex but for [`Timing::Fastest`] with a rising ramp longer than the falling
     /// one: where ramps without a cruise (d ∝ v^1.5) pass into ramps with one, its slope falls.
-    pub(crate) fn kink_depth(&self, planner: &Planner, spacing: f64) -> f64 {
+    pub(crate) fn kink_depth(&self, spacing: f64) -> f64 {
         if self.stretched {
             return 0.0;
         }
-        let low = (self.kink / spacing) as u64 as f64 * spacing;
-        let [at_low, at_kink, at_high] = [low, self.kink, low + spacing].map(|v| self.distance(planner, v));
-        let between = at_low + (self.kink - low) / spacing * (at_high - at_low);
+        let kink = self.brake.ramps_only;
+        let low = (kink / spacing) as u64 as f64 * spacing;
+        let [at_low, at_kink, at_high] = [low, kink, low + spacing].map(|v| self.distance(v));
+        let between = at_low + (kink - low) / spacing * (at_high - at_low);
         (at_kink - between).max(0.0)
     }
 
     /// Displacement of one step, mirrored [rad or m].
     #[inline]
-    pub(crate) fn displacement(&self, planner: &Planner, v1: f64, v2: f64) -> f64 {
-        self.sign * planner.displacement(self.sign * v1, self.sign * v2)
+    pub(crate) fn displacement(&self, v1: f64, v2: f64) -> f64 {
+        let lag = if v2 >= v1 { self.climb.at(v2 - v1) } else { -self.brake.at(v1 - v2) };
+        v2 * self.period - lag
+    }
+
+    /// Derivative of [`Braking::displacement`] by its end velocity \[s\].
+    #[inline]
+    pub(crate) fn displacement_slope(&self, v1: f64, v2: f64) -> f64 {
+        let lag = if v2 >= v1 { self.climb.slope_at(v2 - v1) } else { self.brake.slope_at(v1 - v2) };
+        self.period - lag
     }
 
     /// An interval of velocities or positions, mirrored.

@@ -1,23 +1,19 @@
 //! The largest velocity whose step still leaves room to brake.
 
-use jbtg::{Interval, Planner};
+use jbtg::Interval;
 
+use crate::curve::Curve;
 use crate::side::Braking;
-use crate::table::{Knot, interpolate};
 
-/// Where braking distances come from, with the spacing of the velocities between which they are smooth.
-#[derive(Clone, Copy, Debug)]
-pub(crate) struct Distances<'a> {
-    pub(crate) knots: Option<&'a [Knot]>,
-    pub(crate) spacing: f64,
-}
+/// Most Newton steps; each that leaves its bracket halves it, so that these suffice for the whole of double precision.
+const ROUNDS: u32 = 100;
 
 /// One limit, seen from one state; mirrored coordinates.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Approach<'a> {
-    pub(crate) planner: &'a Planner,
     pub(crate) braking: &'a Braking,
-    pub(crate) distances: Distances<'a>,
+    /// The table that braking distances are read from, if not their closed form.
+    pub(crate) table: Option<&'a Curve<'a>>,
     /// Position [rad or m].
     pub(crate) position: f64,
     /// Velocity [rad/s or m/s].
@@ -29,104 +25,102 @@ pub(crate) struct Approach<'a> {
 }
 
 impl Approach<'_> {
-    /// Stopping distance from `velocity` [rad or m].
-    #[inline]
-    pub(crate) fn distance(&self, velocity: f64) -> f64 {
-        match self.distances.knots {
-            Some(knots) => interpolate(knots, velocity),
-            None if velocity > self.braking.velocity * (1.0 + 1e-9) => f64::INFINITY,
-            None => self.braking.distance(self.planner, velocity),
-        }
-    }
-
-    /// Travel until rest of a step to `velocity` followed by braking [rad or m]. Grows with `velocity`.
-    #[inline]
-    fn travel(&self, velocity: f64) -> f64 {
-        self.braking.displacement(self.planner, self.velocity, velocity) + self.distance(velocity)
-    }
-
     /// Largest reachable velocity after which braking still stops before the limit, or the braking velocity if there
     /// is none [rad/s or m/s].
     ///
-    /// The travel is monotone in the velocity, so the admissible velocities form an interval from below.
+    /// The travel until rest, of the step and of braking after it, grows with the velocity, so the admissible velocities
+    /// form an interval from below.
+    #[inline]
     pub(crate) fn max_velocity(&self) -> f64 {
-        let room = self.braking.limit - self.braking.guard - self.position;
-        let high = (self.reachable.max, self.travel(self.reachable.max));
-        if high.1 <= room {
-            return high.0;
+        let braking = self.braking;
+        let room = braking.limit - braking.guard - self.position;
+        let highest = self.reachable.max;
+        if braking.is_far(self.position) && self.velocity <= braking.velocity {
+            return highest;
         }
-        let low = (self.brake, self.travel(self.brake));
-        if low.1 > room || low.0 >= high.0 {
-            return low.0;
-        }
-        let (low, high) = self.smooth_bracket(low, high, room);
-        self.refine(low, high, room)
+        let velocity = if braking.stretched { self.solve_stretched(room) } else { self.solve_fastest(room) };
+        velocity.max(self.brake).min(highest)
     }
 
-    /// Narrows (velocity, travel) brackets to a stretch on which the travel has no kink.
-    fn smooth_bracket(
-        &self,
-        mut low: (f64, f64),
-        mut high: (f64, f64),
-        room: f64,
-    ) -> ((f64, f64), (f64, f64)) {
-        let mut split = |velocity: f64| {
-            let travel = self.travel(velocity);
-            if travel <= room {
-                low = (velocity, travel)
-            } else {
-                high = (velocity, travel)
-            }
-            (low.0, high.0)
-        };
-        let (mut below, mut above) = (self.brake, self.reachable.max);
-        for kink in [0.0, self.velocity] {
-            if below < kink && kink < above {
-                (below, above) = split(kink);
-            }
+    /// Stopping distance from `velocity` and its slope [rad or m, s].
+    #[inline]
+    fn distance_and_slope(&self, velocity: f64) -> (f64, f64) {
+        match self.table {
+            Some(curve) => curve.distance_and_slope(velocity),
+            None => (self.braking.distance(velocity), self.braking.distance_slope(velocity)),
         }
-        let spacing = self.distances.spacing;
-        if above > 0.0 {
-            let (mut first, mut last) = ((below / spacing) as u64 + 1, (above / spacing) as u64);
-            while first <= last {
-                let middle = first + (last - first) / 2;
-                let kink = middle as f64 * spacing;
-                if kink <= below {
-                    first = middle + 1;
-                } else if kink >= above {
-                    last = middle - 1;
-                } else {
-                    let was_above = above;
-                    (below, above) = split(kink);
-                    if above < was_above { last = middle - 1 } else { first = middle + 1 }
+    }
+
+    /// The velocity at which the travel is `room`, in closed form.
+    ///
+    /// With [`Timing::Stretched`](jbtg::Timing) the step covers T·v′ − l·(v′ − v), one l for velocities above v and one for
+    /// those below, and the stopping distance is linear between braking steps. So the travel at braking steps lies
+    /// on a parabola, which tells between which two the solution is. An index that rounding puts off by one costs
+    /// nothing, since neighbouring lines meet there.
+    #[inline]
+    fn solve_stretched(&self, room: f64) -> f64 {
+        let braking = self.braking;
+        let hold = self.velocity * braking.period + self.distance_and_slope(self.velocity).0;
+        let lag = if hold <= room { braking.climb.mean } else { braking.brake.mean };
+        self.solve_linear(lag, room)
+    }
+
+    /// The velocity at which the travel is `room`, if steps had a lag of `lag` \[s\] per change in both directions.
+    #[inline]
+    fn solve_linear(&self, lag: f64, room: f64) -> f64 {
+        let braking = self.braking;
+        let (gain, rest) = (braking.period - lag, room - lag * self.velocity);
+        if rest <= 0.0 {
+            return rest / gain;
+        }
+        let steps = braking.steps_within(gain, rest);
+        let (velocity, distance, slope) = match self.table {
+            Some(curve) => curve.segment(steps as usize),
+            None => braking.segment(steps),
+        };
+        velocity + (rest - gain * velocity - distance) / (gain + slope)
+    }
+
+    /// The velocity at which the travel is `room`, by Newton steps within a bracket, from the safe side.
+    ///
+    /// They start where the travel would be `room` if every step had the largest one's mean lag.
+    fn solve_fastest(&self, room: f64) -> f64 {
+        let travel = |velocity: f64| {
+            let (distance, slope) = self.distance_and_slope(velocity);
+            let step = self.braking.displacement(self.velocity, velocity);
+            (step + distance - room, self.braking.displacement_slope(self.velocity, velocity) + slope)
+        };
+        let (mut low, mut high) = (self.brake, self.reachable.max);
+        if travel(high).0 <= 0.0 {
+            return high;
+        }
+        if travel(low).0 >= 0.0 {
+            return low;
+        }
+        let tolerance = 0.125 * self.braking.rounding;
+        let mut velocity = self.guess(room);
+        for _ in 0..ROUNDS {
+            if !(low < velocity && velocity < high) {
+                velocity = 0.5 * (low + high);
+                if velocity <= low || velocity >= high {
+                    break;
                 }
             }
-        }
-        (low, high)
-    }
-
-    /// The root of travel = room by the Illinois method, from the safe side. One step where the travel is linear.
-    fn refine(&self, mut low: (f64, f64), mut high: (f64, f64), room: f64) -> f64 {
-        let tolerance = 0.125 * self.braking.rounding;
-        let (mut low_excess, mut high_excess) = (low.1 - room, high.1 - room);
-        for _ in 0..60 {
-            let share = if high_excess.is_finite() { low_excess / (low_excess - high_excess) } else { 0.5 };
-            let velocity = (low.0 + share * (high.0 - low.0)).clamp(low.0, high.0);
-            let travel = self.travel(velocity);
-            let excess = travel - room;
+            let (excess, slope) = travel(velocity);
             if excess.abs() <= tolerance {
                 return velocity;
             }
             if excess < 0.0 {
-                low = (velocity, travel);
-                low_excess = excess;
-                high_excess *= 0.5;
+                low = velocity;
             } else {
-                high = (velocity, travel);
-                high_excess = excess;
-                low_excess *= 0.5;
+                high = velocity;
             }
+            velocity -= excess / slope;
         }
-        low.0
+        low
+    }
+
+    fn guess(&self, room: f64) -> f64 {
+        Approach { table: None, ..*self }.solve_stretched(room)
     }
 }

@@ -1,11 +1,11 @@
 //! Braking tables: pairs of braking distance and velocity, built offline.
 
-use jbtg::PlannerSpec;
+use jbtg::{PlannerSpec, Timing};
 #[cfg(feature = "build")]
 use std::borrow::Cow;
 
+use crate::curve::Curve;
 use crate::hash::table_hash;
-use crate::math::sqrt;
 use crate::side::Side;
 
 /// Version of the table's layout and meaning; part of its hash.
@@ -17,7 +17,7 @@ pub const SCHEMA: u32 = 1;
 /// distance here is that of braking in *steps* of one period, which is what a policy with zero acceleration at
 /// every period's end can do; one continuous ramp to zero would promise too much.
 #[derive(Clone, Copy, Debug, PartialEq)]
-#[cfg_attr(feature = "build", derive(serde::Serialize, serde::Deserialize), serde(deny_unknown_fields))]
+#[cfg_attr(feature = "build", derive(serde::Deserialize), serde(deny_unknown_fields))]
 pub struct Knot {
     /// Distance to the limit [rad or m].
     pub distance: f64,
@@ -40,11 +40,6 @@ pub struct TableParts<'a> {
     pub hash: u64,
 }
 
-#[cfg(feature = "build")]
-type Knots<'a> = Cow<'a, [Knot]>;
-#[cfg(not(feature = "build"))]
-type Knots<'a> = &'a [Knot];
-
 /// Braking distances of one joint, both directions, checked against their hash.
 ///
 /// Linear interpolation between knots is exact for [`Timing::Stretched`](jbtg::Timing) and on the safe side for
@@ -54,8 +49,8 @@ type Knots<'a> = &'a [Knot];
 pub struct BrakingTable<'a> {
     built_from: PlannerSpec,
     subdivisions: u32,
-    upper: Knots<'a>,
-    lower: Knots<'a>,
+    upper: Curve<'a>,
+    lower: Curve<'a>,
     hash: u64,
 }
 
@@ -65,10 +60,11 @@ impl<'a> TryFrom<TableParts<'a>> for BrakingTable<'a> {
     fn try_from(parts: TableParts<'a>) -> Result<Self, TableError> {
         let TableParts { built_from, subdivisions, upper, lower, hash } = parts;
         check_hash(&parts)?;
-        check_knots(Side::Upper, upper, subdivisions)?;
-        check_knots(Side::Lower, lower, subdivisions)?;
         #[cfg(feature = "build")]
         let (upper, lower) = (Cow::Borrowed(upper), Cow::Borrowed(lower));
+        let malformed = |side| move |index| TableError::Malformed { side, index };
+        let upper = Curve::new(upper, subdivisions, built_from.period).map_err(malformed(Side::Upper))?;
+        let lower = Curve::new(lower, subdivisions, built_from.period).map_err(malformed(Side::Lower))?;
         Ok(Self { built_from, subdivisions, upper, lower, hash })
     }
 }
@@ -95,101 +91,76 @@ impl BrakingTable<'_> {
     /// Knots towards one limit, in increasing order.
     #[must_use]
     pub fn knots(&self, side: Side) -> &[Knot] {
-        let knots: &Knots<'_> = match side {
-            Side::Upper => &self.upper,
-            Side::Lower => &self.lower,
-        };
-        knots
+        self.curve(side).knots()
     }
 
     /// Distance that stepwise braking needs from `speed` towards `side` [rad or m], in constant time.
     ///
     /// 0 for a speed ≤ 0 (away from the limit), infinite beyond the last knot, which is the velocity limit or a
-    /// speed from which the whole position interval does not suffice.
+    /// speed from which the whole position interval does not suffice, and for NaN.
     #[must_use]
+    #[inline]
     pub fn distance(&self, side: Side, speed: f64) -> f64 {
-        interpolate(self.knots(side), speed)
+        self.curve(side).distance_and_slope(speed).0
     }
 
-    /// Largest speed towards `side` from which stepwise braking stops within `distance` [rad/s or m/s].
+    /// Largest speed towards `side` from which stepwise braking stops within `distance` [rad/s or m/s], in constant
+    /// time.
     ///
-    /// 0 where the distance is not positive, the last knot's speed where it is beyond the last knot. Constant
-    /// time: the knot is found from the parabola that they lie on, but for a step or two.
+    /// 0 where the distance is not positive or NaN, the last knot's speed where it is beyond the last knot. The
+    /// braking step is found from the parabola that the knots of whole steps lie on, or is a neighbour of the one
+    /// found; within a step, ⌈log₂ subdivisions⌉ halvings find the knot.
     #[must_use]
+    #[inline]
     pub fn max_velocity(&self, side: Side, distance: f64) -> f64 {
-        let knots = self.knots(side);
-        let last = knots.len() - 1;
-        if distance.is_nan() || distance <= 0.0 {
-            return 0.0;
+        self.curve(side).max_speed(distance)
+    }
+}
+
+impl<'a> BrakingTable<'a> {
+    #[inline]
+    pub(crate) const fn curve(&self, side: Side) -> &Curve<'a> {
+        match side {
+            Side::Upper => &self.upper,
+            Side::Lower => &self.lower,
         }
-        if distance >= knots[last].distance {
-            return knots[last].velocity;
-        }
-        let per_step = knots[1].velocity * f64::from(self.subdivisions);
-        let steps = sqrt(2.0 * distance / (per_step * self.built_from.period));
-        let mut k = ((steps * f64::from(self.subdivisions)) as usize).min(last - 1);
-        while knots[k].distance > distance {
-            k -= 1;
-        }
-        while knots[k + 1].distance <= distance {
-            k += 1;
-        }
-        let (low, high) = (knots[k], knots[k + 1]);
-        let share = (distance - low.distance) / (high.distance - low.distance);
-        (low.velocity + share * (high.velocity - low.velocity)).min(high.velocity)
     }
 }
 
 #[cfg(feature = "build")]
 impl BrakingTable<'static> {
     /// A table that owns its knots and computes its hash.
+    ///
+    /// # Errors
+    /// [`TableError::Malformed`], as for knots from elsewhere.
     pub(crate) fn owned(
         built_from: PlannerSpec,
         subdivisions: u32,
         upper: Vec<Knot>,
         lower: Vec<Knot>,
-    ) -> Self {
+    ) -> Result<Self, TableError> {
         let hash = table_hash(&built_from, subdivisions, &upper, &lower);
-        Self { built_from, subdivisions, upper: Cow::Owned(upper), lower: Cow::Owned(lower), hash }
+        let curve = |side, knots| {
+            Curve::new(Cow::Owned(knots), subdivisions, built_from.period)
+                .map_err(|index| TableError::Malformed { side, index })
+        };
+        let (upper, lower) = (curve(Side::Upper, upper)?, curve(Side::Lower, lower)?);
+        Ok(Self { built_from, subdivisions, upper, lower, hash })
     }
 }
 
-/// Distance at `speed` by linear interpolation between equally spaced knots; infinite beyond the last one and for
-/// NaN.
-#[inline]
-pub(crate) fn interpolate(knots: &[Knot], speed: f64) -> f64 {
-    if speed <= 0.0 {
-        return 0.0;
+/// Knots per braking step: one where the distance is linear in between, sixteen where it is not.
+pub(crate) const fn subdivisions(timing: Timing) -> u32 {
+    match timing {
+        Timing::Stretched => 1,
+        Timing::Fastest => 16,
     }
-    let last = knots.len() - 1;
-    if speed.is_nan() || speed > knots[last].velocity {
-        return f64::INFINITY;
-    }
-    let k = ((speed / knots[1].velocity) as usize).min(last - 1);
-    let (low, high) = (knots[k], knots[k + 1]);
-    let share = (speed - low.velocity) / (high.velocity - low.velocity);
-    low.distance + share * (high.distance - low.distance)
 }
 
-fn check_hash(parts: &TableParts<'_>) -> Result<(), TableError> {
+/// Compares a table's hash with that of its content.
+pub(crate) fn check_hash(parts: &TableParts<'_>) -> Result<(), TableError> {
     let found = table_hash(&parts.built_from, parts.subdivisions, parts.upper, parts.lower);
     if found == parts.hash { Ok(()) } else { Err(TableError::Corrupted { stated: parts.hash, found }) }
-}
-
-fn check_knots(side: Side, knots: &[Knot], subdivisions: u32) -> Result<(), TableError> {
-    let malformed = |index| Err(TableError::Malformed { side, index });
-    if subdivisions == 0 || knots.len() < 2 || knots[0] != (Knot { distance: 0.0, velocity: 0.0 }) {
-        return malformed(0);
-    }
-    let spacing = knots[1].velocity;
-    for (index, pair) in knots.windows(2).enumerate() {
-        let expected = (index + 1) as f64 * spacing;
-        let in_order = pair[1].velocity == expected && pair[1].distance > pair[0].distance;
-        if !(in_order && expected > 0.0 && expected.is_finite() && pair[1].distance.is_finite()) {
-            return malformed(index + 1);
-        }
-    }
-    Ok(())
 }
 
 /// Why a braking table was refused.
@@ -203,7 +174,8 @@ pub enum TableError {
         /// The hash of what it holds.
         found: u64,
     },
-    /// Its knots do not start at (0, 0), are not equally spaced in velocity or do not increase in distance.
+    /// Its knots do not start at (0, 0), are not equally spaced in velocity, do not increase in distance, or those of
+    /// whole braking steps do not lie on the parabola that braking steps lie on.
     #[error("knot {index} of the braking table ({side:?}) is out of order")]
     Malformed {
         /// The limit whose knots are wrong.

@@ -4,8 +4,11 @@ use jbtg::{Interval, Planner};
 
 use crate::range::{RangeStatus, SafeRange};
 use crate::side::{Braking, Side};
-use crate::solve::{Approach, Distances};
-use crate::table::BrakingTable;
+use crate::solve::Approach;
+use crate::table::{BrakingTable, subdivisions};
+
+/// Relative difference that counts as rounding between a knot and what braking takes.
+const ROUNDING: f64 = 4.0 * f64::EPSILON;
 
 /// Safe velocity ranges of one joint.
 ///
@@ -44,7 +47,7 @@ impl<'a> SafeZone<'a> {
     ///
     /// # Errors
     /// [`ZoneError::Stale`] if the table was built for other limits, another shape, timing or period,
-    /// [`ZoneError::Unsafe`] if a knot promises less than braking takes, [`ZoneError::Narrow`] if the position
+    /// [`ZoneError::Spacing`] or [`ZoneError::Distance`] if a knot is not where braking ends, [`ZoneError::Narrow`] if the position
     /// interval is so narrow that rounding (or the overshoot of the ramp's shape) leaves no room to move.
     pub fn new(planner: Planner, table: BrakingTable<'a>) -> Result<Self, ZoneError> {
         if table.built_from() != planner.spec() {
@@ -57,8 +60,12 @@ impl<'a> SafeZone<'a> {
     }
 
     fn assemble(planner: Planner, table: Option<BrakingTable<'a>>) -> Result<Self, ZoneError> {
-        let upper = Braking::new(&planner, Side::Upper);
-        let lower = Braking::new(&planner, Side::Lower);
+        let mut upper = Braking::new(&planner, Side::Upper);
+        let mut lower = Braking::new(&planner, Side::Lower);
+        if let Some(table) = &table {
+            upper.set_longest_stop(table.distance(Side::Upper, upper.velocity));
+            lower.set_longest_stop(table.distance(Side::Lower, lower.velocity));
+        }
         let guard = upper.guard + lower.guard;
         if guard >= 0.5 * upper.width {
             return Err(ZoneError::Narrow { width: upper.width, guard });
@@ -93,24 +100,39 @@ impl<'a> SafeZone<'a> {
 
     /// Distance that the stepwise braking policy travels from `velocity` [rad or m], ≥ 0, in closed form.
     ///
-    /// Each period takes as much speed away as one period can. The direction is that of the velocity.
+    /// Each period takes as much speed away as one period can. The direction is that of the velocity. Infinite for a
+    /// velocity that is not finite.
     ///
     /// Source: [P, § Safety Calculations] brakes in one continuous ramp; see [`SafeZone`].
     #[must_use]
     pub fn stopping_distance(&self, velocity: f64) -> f64 {
-        if velocity >= 0.0 {
-            self.upper.distance(&self.planner, velocity)
+        if !velocity.is_finite() {
+            f64::INFINITY
+        } else if velocity >= 0.0 {
+            self.upper.distance(velocity)
         } else {
-            self.lower.distance(&self.planner, -velocity)
+            self.lower.distance(-velocity)
         }
     }
 
     /// The velocities that are safe to command as the end of the next step from `position` [rad or m] and
     /// `velocity` [rad/s or m/s], both taken at the start of the step, where the acceleration is zero.
     ///
-    /// Total: never empty, whatever the state; [`SafeRange::status`] says what it can promise.
+    /// Total: never empty, whatever the state; [`SafeRange::status`] says what it can promise. In constant time with
+    /// [`Timing::Stretched`](jbtg::Timing).
     #[must_use]
+    #[inline]
     pub fn range(&self, position: f64, velocity: f64) -> SafeRange {
+        let is_slow = self.planner.velocity().contains(velocity);
+        if is_slow && self.upper.is_far(position) && self.lower.is_far(-position) {
+            let Interval { min, max } = self.planner.reachable(velocity);
+            let brake = towards_zero(velocity, Interval { min, max });
+            return SafeRange { min, max, brake, narrowed: false, status: RangeStatus::Safe };
+        }
+        self.range_near_a_limit(position, velocity, is_slow)
+    }
+
+    fn range_near_a_limit(&self, position: f64, velocity: f64, is_slow: bool) -> SafeRange {
         if !(position.is_finite() && velocity.is_finite()) {
             return self.blind_range(velocity);
         }
@@ -120,10 +142,7 @@ impl<'a> SafeZone<'a> {
         let lower = self.approach(Side::Lower, position, velocity, reachable, brake);
         let mut max = upper.max_velocity().min(-lower.min_velocity());
         let mut min = upper.min_velocity().max(-lower.max_velocity());
-        let mut status = RangeStatus::Safe;
-        if !self.planner.limits().velocity().contains(velocity) {
-            status = RangeStatus::VelocityOutside;
-        }
+        let mut status = if is_slow { RangeStatus::Safe } else { RangeStatus::VelocityOutside };
         if max <= brake && upper.cannot_stop() || min >= brake && lower.cannot_stop() {
             status = RangeStatus::CannotStop;
         }
@@ -135,9 +154,10 @@ impl<'a> SafeZone<'a> {
             min = min.max(-lower.way_back()).min(max);
         }
         let narrowed = min > reachable.min || max < reachable.max;
-        SafeRange { min, max, brake: brake.clamp(min, max), narrowed, status }
+        SafeRange { min, max, brake: brake.max(min).min(max), narrowed, status }
     }
 
+    #[inline]
     fn approach(
         &self,
         side: Side,
@@ -150,17 +170,9 @@ impl<'a> SafeZone<'a> {
             Side::Upper => &self.upper,
             Side::Lower => &self.lower,
         };
-        let distances = match &self.table {
-            Some(table) => {
-                let knots = table.knots(side);
-                Distances { knots: Some(knots), spacing: knots[1].velocity }
-            }
-            None => Distances { knots: None, spacing: braking.step },
-        };
         Approach {
-            planner: &self.planner,
             braking,
-            distances,
+            table: self.table.as_ref().map(|table| table.curve(side)),
             position: braking.sign * position,
             velocity: braking.sign * velocity,
             reachable: braking.mirrored(reachable),
@@ -184,7 +196,7 @@ impl Approach<'_> {
 
     /// Whether braking at once, from inside, overruns the limit by more than rounding.
     fn cannot_stop(&self) -> bool {
-        let travel = self.braking.distance(self.planner, self.velocity);
+        let travel = self.braking.distance(self.velocity);
         self.velocity > 0.0 && self.position + travel > self.braking.limit + self.braking.tolerance
     }
 
@@ -195,7 +207,7 @@ impl Approach<'_> {
             self.brake
         } else {
             let slowest_return = 0.5 * self.braking.step;
-            (-slowest_return).clamp(self.reachable.min, self.reachable.max)
+            (-slowest_return).max(self.reachable.min).min(self.reachable.max)
         }
     }
 }
@@ -211,21 +223,26 @@ fn towards_zero(velocity: f64, reachable: Interval) -> f64 {
     }
 }
 
-/// Checks that no knot claims a distance shorter than braking takes.
+/// Checks that the knots lie where braking steps ask for, at the distances that braking takes.
 fn check_promises(planner: &Planner, table: &BrakingTable<'_>, side: Side) -> Result<(), ZoneError> {
     let braking = Braking::new(planner, side);
-    let spacing = braking.step / f64::from(table.subdivisions());
-    let lift = braking.kink_depth(planner, spacing);
-    for knot in &table.knots(side)[1..] {
-        let needed = braking.distance(planner, knot.velocity) + lift;
-        if knot.distance < needed * (1.0 - 1e-12) {
-            return Err(ZoneError::Unsafe { side, velocity: knot.velocity, distance: knot.distance, needed });
-        }
-    }
+    let spacing = braking.step / f64::from(subdivisions(planner.spec().timing));
     // The braking policy keeps the interpolated distance only if knots lie on braking steps.
     let found = table.knots(side)[1].velocity;
-    if (found - spacing).abs() > 1e-12 * spacing {
+    if (found - spacing).abs() > ROUNDING * spacing {
         return Err(ZoneError::Spacing { side, expected: spacing, found });
+    }
+    let lift = braking.kink_depth(spacing);
+    for knot in &table.knots(side)[1..] {
+        let needed = braking.distance(knot.velocity) + lift;
+        if (knot.distance - needed).abs() > ROUNDING * needed {
+            return Err(ZoneError::Distance {
+                side,
+                velocity: knot.velocity,
+                distance: knot.distance,
+                needed,
+            });
+        }
     }
     Ok(())
 }
@@ -241,11 +258,11 @@ pub enum ZoneError {
         /// The table's hash.
         hash: u64,
     },
-    /// A knot promises that the joint stops sooner than it does.
+    /// A knot promises another distance than braking takes.
     #[error(
-        "braking table is unsafe ({side:?}): it claims {distance} from velocity {velocity}, braking takes {needed}"
+        "braking table is wrong ({side:?}): it claims {distance} from velocity {velocity}, braking takes {needed}"
     )]
-    Unsafe {
+    Distance {
         /// The limit concerned.
         side: Side,
         /// The knot's velocity [rad/s or m/s].

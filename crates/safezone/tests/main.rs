@@ -1,9 +1,14 @@
 //! Integration tests: every file in this folder is a module of this one program.
 
 mod adversary;
+mod lowering;
+mod no_allocation;
+mod oracle;
 mod paper;
+mod peers;
 mod properties;
 mod recovery;
 mod table_file;
 mod telescope;
 mod tolerance;
+mod totality;

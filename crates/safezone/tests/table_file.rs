@@ -127,21 +127,32 @@ fn knots_out_of_order_are_refused_even_with_their_hash() {
     check_forged(|knots| knots[3].distance = knots[2].distance, |table| assert_eq!(table, malformed(3)));
     check_forged(|knots| knots[4].distance = f64::NAN, |table| assert_eq!(table, malformed(4)));
     check_forged(|knots| knots[0].distance = 1e-3, |table| assert_eq!(table, malformed(0)));
+    check_forged(|knots| knots[5].distance *= 2.0, |table| assert_eq!(table, malformed(5)));
     check_forged(Vec::clear, |table| assert_eq!(table, malformed(0)));
 }
 
 #[test]
-fn knots_that_promise_too_much_are_refused_even_with_their_hash() {
+fn knots_that_promise_another_distance_are_refused_even_with_their_hash() {
     let planner = planner(Shape::Smoothstep, Timing::Stretched);
     check_forged(
         |knots| knots[3].distance *= 0.999,
         |table| {
             let error = SafeZone::new(planner, table.expect("knots in order")).unwrap_err();
-            assert!(matches!(error, ZoneError::Unsafe { side: Side::Upper, .. }), "{error}");
+            assert!(matches!(error, ZoneError::Distance { side: Side::Upper, .. }), "{error}");
         },
     );
     check_forged(
-        |knots| knots.iter_mut().for_each(|knot| knot.velocity *= 0.5),
+        |knots| knots[3].distance *= 1.001,
+        |table| {
+            let error = SafeZone::new(planner, table.expect("knots in order")).unwrap_err();
+            assert!(matches!(error, ZoneError::Distance { side: Side::Upper, .. }), "{error}");
+        },
+    );
+    check_forged(
+        |knots| {
+            let spacing = 0.999 * knots[1].velocity;
+            knots.iter_mut().enumerate().for_each(|(i, knot)| knot.velocity = i as f64 * spacing);
+        },
         |table| {
             let error = SafeZone::new(planner, table.expect("knots in order")).unwrap_err();
             assert!(matches!(error, ZoneError::Spacing { side: Side::Upper, .. }), "{error}");
