@@ -1,7 +1,7 @@
 //! What holds for every planner and every step.
 
 use jbtg::strategies::planners;
-use jbtg::{Extrema, Interval, Planner, PlannerSpec, Segment, Shape, State, Timing, Trajectory};
+use jbtg::{Direction, Extrema, Interval, Planner, PlannerSpec, Segment, Shape, State, Timing, Trajectory};
 use proptest::prelude::*;
 
 use crate::tolerance;
@@ -177,6 +177,42 @@ proptest! {
         }
         prop_assert!(planner.ramp(0.0, v1, reachable.max.next_up()).is_err());
         prop_assert!(planner.ramp(0.0, v1, reachable.min.next_down()).is_err());
+    }
+
+    /// Each direction has its own acceleration bound and each of its ramps its own jerk bound.
+    #[test]
+    fn the_largest_step_uses_every_bound_of_its_direction(planner in planners()) {
+        let spec = PlannerSpec { shape: Shape::Smoothstep, ..*planner.spec() };
+        let Ok(planner) = Planner::try_from(spec) else { return Ok(()) };
+        let (limits, reachable) = (planner.limits(), planner.reachable(0.0));
+        for (direction, v2) in [(Direction::Increasing, reachable.max), (Direction::Decreasing, reachable.min)] {
+            let authority = planner.authority(direction);
+            let ramps = authority.ramp_up.min(authority.ramp_down);
+            if v2.abs() < authority.velocity_change * (1.0 - tolerance::LIMIT) || ramps < 1.1e-6 * planner.period() {
+                continue; // the velocity limit came first, or the ramps are as short as they get
+            }
+            let extrema = planner.ramp(0.0, 0.0, v2)?.extrema();
+            let share = |found: Interval, limit: Interval| match direction {
+                Direction::Increasing => found.max / limit.max,
+                Direction::Decreasing => found.min / limit.min,
+            };
+            let is_all_ramps = authority.ramp_up + authority.ramp_down >= planner.period() * (1.0 - tolerance::LIMIT);
+            let used = share(extrema.acceleration, limits.acceleration());
+            prop_assert!(is_all_ramps || used >= 1.0 - tolerance::LIMIT, "{used} of the acceleration bound");
+            for used in [extrema.jerk.max / limits.jerk().max, extrema.jerk.min / limits.jerk().min] {
+                prop_assert!(used >= 1.0 - tolerance::LIMIT, "{used} of a jerk bound");
+            }
+        }
+    }
+
+    #[test]
+    fn extrema_of_a_turn_are_those_of_the_motion(planner in planners(), shares in (shares(), 0.0..=1.0, shares())) {
+        let (position, _, _) = pick(&planner, (shares.0, 0.0, 0.0));
+        let fast = f64::min(planner.reachable(0.0).max, -planner.reachable(0.0).min);
+        let (v1, v2) = (0.5 * fast * shares.1, -0.5 * fast * shares.2);
+        check_extrema(&planner.ramp(position, v1, planner.reachable(v1).clamp(v2))?)?;
+        let (v1, v2) = (-v1, -v2);
+        check_extrema(&planner.ramp(position, v1, planner.reachable(v1).clamp(v2))?)?;
     }
 
     /// What `safezone` leans on.
