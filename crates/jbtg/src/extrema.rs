@@ -108,3 +108,63 @@ pub(crate) fn include_segment(extrema: &mut Extrema, segment: &Segment) {
         }
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use proptest::prelude::*;
+
+    use super::*;
+
+    /// Any quintic on [0, T]: terms of any size relative to each other, or none, as no planner would make them.
+    fn segments() -> impl Strategy<Value = Segment> {
+        let term = prop_oneof![
+            1 => Just(0.0),
+            4 => -1.0..1.0,
+            2 => (-9.0..0.0_f64, any::<bool>())
+                .prop_map(|(exponent, flip)| if flip { -10_f64.powf(exponent) } else { 10_f64.powf(exponent) }),
+        ];
+        (prop::array::uniform6(term), 1e-3..1e3).prop_map(|(terms, duration): ([f64; 6], f64)| {
+            let coefficients = std::array::from_fn(|k| terms[k] / duration.powi(k as i32));
+            Segment { start: 0.0, duration, coefficients }
+        })
+    }
+
+    fn quantities(extrema: &Extrema, duration: f64) -> [Interval; 4] {
+        let scaled = |interval: Interval, power| {
+            let scale = duration.powi(power);
+            Interval::new(interval.min * scale, interval.max * scale)
+        };
+        [
+            extrema.position,
+            scaled(extrema.velocity, 1),
+            scaled(extrema.acceleration, 2),
+            scaled(extrema.jerk, 3),
+        ]
+    }
+
+    proptest! {
+        #![proptest_config(ProptestConfig::with_cases(20_000))]
+
+        #[test]
+        fn samples_of_any_quintic_reach_its_extrema_and_no_further(segment in segments()) {
+            const SAMPLES: u32 = 256;
+            let duration = segment.duration;
+            let mut exact = Extrema::at(segment.state_at(0.0));
+            include_segment(&mut exact, &segment);
+            let mut sampled = Extrema::at(segment.state_at(0.0));
+            for i in 1..=SAMPLES {
+                sampled.widen(segment.state_at(duration * f64::from(i) / f64::from(SAMPLES)));
+            }
+            // In u = t/T every term is at most 1, so that derivatives are at most (5!/1!)·6 and rounding is absolute.
+            let size = (0..6).map(|k| segment.coefficients[k].abs() * duration.powi(k as i32)).fold(0.0, f64::max);
+            let gap = 720.0 * size / f64::from(SAMPLES * SAMPLES) / 8.0;
+            let rounding = 120.0 * 32.0 * f64::EPSILON * size;
+            for (exact, sampled) in quantities(&exact, duration).into_iter().zip(quantities(&sampled, duration)) {
+                prop_assert!(exact.min <= sampled.min + rounding && exact.max >= sampled.max - rounding,
+                    "{exact:?} misses {sampled:?}");
+                prop_assert!(exact.min >= sampled.min - gap - rounding && exact.max <= sampled.max + gap + rounding,
+                    "{exact:?} is wider than {sampled:?}");
+            }
+        }
+    }
+}
