@@ -153,11 +153,15 @@ impl Values {
         }
     }
 
-    /// A joint of the crane; `lift` stands for `lift_joint`. The flag is required.
-    pub(crate) fn joint(&self, flag: &str) -> Result<&'static str, UsageError> {
+    /// A joint of the crane; `lift` stands for `lift_joint`. The flag is required. If `config` is given, the crane may
+    /// be any, and its own file says whether it has such a joint.
+    pub(crate) fn joint(&self, flag: &str, config: &str) -> Result<String, UsageError> {
         let text = self.given(flag, self.text(flag))?;
+        if self.text(config).is_some() {
+            return Ok(text.to_owned());
+        }
         let found = JOINTS.iter().find(|name| **name == text || name.strip_suffix("_joint") == Some(text));
-        found.copied().ok_or_else(|| self.error(&unknown("joint", text, JOINTS)))
+        found.map(|name| (*name).to_owned()).ok_or_else(|| self.error(&unknown("joint", text, JOINTS)))
     }
 
     /// Name of a run: one folder name, so nothing outside `runs/` can be meant.

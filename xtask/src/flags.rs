@@ -119,8 +119,21 @@ pub(crate) const COMMANDS: &[Command] = &[
     Command {
         name: "dynamics",
         summary: "Compute the dynamics of given states and print them as JSON",
-        flags: &[required("states", "FILE", "states, in the form of the golden states.json")],
+        flags: &[
+            required("states", "FILE", "states, in the form of the golden states.json"),
+            optional("config", "FILE", "configuration, instead of assets/config/default.ron"),
+        ],
         example: "cargo xtask dynamics --states crates/hiab-dynamics/testdata/golden/states.json",
+    },
+    Command {
+        name: "load-chart",
+        summary: "Chart the largest payload over the tip's positions",
+        flags: &[
+            optional("config", "FILE", "configuration, instead of assets/config/default.ron"),
+            optional("json", "FILE", "write the whole chart there as JSON"),
+            optional("svg", "FILE", "write its picture there"),
+        ],
+        example: "cargo xtask load-chart --svg load.svg",
     },
     Command {
         name: "tidy",
@@ -139,7 +152,7 @@ pub(crate) const COMMANDS: &[Command] = &[
 /// What a curriculum stage may be called.
 pub(crate) const STAGES: &[&str] = &["purple", "yellow", "orange"];
 
-/// The crane's actuated joints. A test compares them with the crane's own file.
+/// The actuated joints of the default configuration's crane. A test compares them with the crane's own file.
 pub(crate) const JOINTS: &[&str] = &[
     "slew_joint",
     "lift_joint",
@@ -167,6 +180,7 @@ pub(crate) enum Invocation {
     Zone(Zone),
     Soak(Soak),
     Dynamics(Dynamics),
+    LoadChart(LoadChart),
     Tidy,
 }
 
@@ -219,7 +233,7 @@ pub(crate) struct Profile {
 
 #[derive(Debug, PartialEq)]
 pub(crate) struct Zone {
-    pub(crate) joint: &'static str,
+    pub(crate) joint: String,
     pub(crate) position: f64,
     pub(crate) velocity: f64,
     pub(crate) config: Option<PathBuf>,
@@ -238,6 +252,14 @@ pub(crate) struct Soak {
 #[derive(Debug, PartialEq)]
 pub(crate) struct Dynamics {
     pub(crate) states: PathBuf,
+    pub(crate) config: Option<PathBuf>,
+}
+
+#[derive(Debug, PartialEq)]
+pub(crate) struct LoadChart {
+    pub(crate) config: Option<PathBuf>,
+    pub(crate) json: Option<PathBuf>,
+    pub(crate) svg: Option<PathBuf>,
 }
 
 impl Invocation {
@@ -289,7 +311,7 @@ impl Invocation {
                 hz: parsed.integer("hz", 1)?,
             }),
             "zone" => Self::Zone(Zone {
-                joint: parsed.joint("joint")?,
+                joint: parsed.joint("joint", "config")?,
                 position: parsed.number("position")?,
                 velocity: parsed.number("velocity")?,
                 config: parsed.existing_file("config")?,
@@ -302,9 +324,15 @@ impl Invocation {
                 threads: parsed.integer("threads", 1)?,
                 case: parsed.integer("case", 0)?,
             }),
-            "dynamics" => {
-                Self::Dynamics(Dynamics { states: parsed.given("states", parsed.existing_file("states")?)? })
-            }
+            "dynamics" => Self::Dynamics(Dynamics {
+                states: parsed.given("states", parsed.existing_file("states")?)?,
+                config: parsed.existing_file("config")?,
+            }),
+            "load-chart" => Self::LoadChart(LoadChart {
+                config: parsed.existing_file("config")?,
+                json: parsed.file("json")?,
+                svg: parsed.file("svg")?,
+            }),
             "tidy" => Self::Tidy,
             _ => Self::Help(None),
         })

@@ -10,6 +10,7 @@ mod dynamics;
 mod eval;
 mod flags;
 mod help;
+mod load_chart;
 mod profile;
 mod runner;
 mod soak;
@@ -54,6 +55,7 @@ fn dispatch(invocation: Invocation) -> anyhow::Result<ExitCode> {
         Invocation::Zone(flags) => flags.run(),
         Invocation::Soak(flags) => flags.run(),
         Invocation::Dynamics(flags) => flags.run(),
+        Invocation::LoadChart(flags) => flags.run(),
         Invocation::Tidy => tidy::run(),
     }
 }

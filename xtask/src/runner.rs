@@ -9,6 +9,8 @@ use std::process::{Command, ExitCode};
 pub(crate) enum Binary {
     /// `kinematics`: trajectories, safe ranges, dynamics; without the learning half, so no `burn`.
     Kinematics,
+    /// `kinematics` with pictures, still without `burn`.
+    Pictures,
     /// `runner`: everything. Its first build takes minutes, so cargo's progress is shown.
     Runner,
 }
@@ -57,6 +59,19 @@ impl Call {
                 "-p",
                 "runner",
                 "--no-default-features",
+                "--bin",
+                "kinematics",
+                "--",
+            ],
+            Binary::Pictures => &[
+                "run",
+                "--quiet",
+                "--release",
+                "-p",
+                "runner",
+                "--no-default-features",
+                "--features",
+                "figures",
                 "--bin",
                 "kinematics",
                 "--",

@@ -7,7 +7,7 @@ use std::process::ExitCode;
 impl Zone {
     pub(crate) fn call(&self) -> Call {
         Call::new(Binary::Kinematics, "zone")
-            .value("joint", self.joint)
+            .value("joint", self.joint.as_str())
             .value("position", self.position.to_string())
             .value("velocity", self.velocity.to_string())
             .option("config", self.config.as_deref())

@@ -116,3 +116,26 @@ fn numbers(value: &Value) -> Vec<f64> {
         _ => Vec::new(),
     }
 }
+
+#[test]
+fn a_load_chart_of_either_machine_holds_payloads_that_fall_with_the_reach() {
+    let project = Project::new();
+    for (config, least) in [("default", 400), ("excavator", 200)] {
+        let command = format!("load-chart --config assets/config/{config}.ron --json chart.json");
+        let summary = check_success(&project.kinematics(&command));
+        assert!(summary.contains("greatest payload: "), "{summary}");
+        let text = std::fs::read_to_string(project.path("chart.json")).unwrap();
+        let chart: Value = serde_json::from_str(&text).unwrap();
+        let points = chart["points"].as_array().unwrap();
+        let columns = chart["x"]["points"].as_u64().unwrap() as usize;
+        assert_eq!(points.len(), columns * chart["z"]["points"].as_u64().unwrap() as usize, "{config}");
+        assert!(points.iter().filter(|point| !point.is_null()).count() >= least, "{config}: {summary}");
+        // Half way up, the farther half of the columns in reach carries less at its end than at its beginning.
+        let row = &points[points.len() / columns / 2 * columns..][..columns];
+        let payloads: Vec<f64> = row.iter().filter_map(|point| point["payload"].as_f64()).collect();
+        assert!(
+            payloads.len() > 5 && payloads[payloads.len() - 1] < payloads[payloads.len() / 2],
+            "{payloads:?}"
+        );
+    }
+}

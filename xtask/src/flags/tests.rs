@@ -23,6 +23,7 @@ fn cargo_line(line: &str) -> String {
         Invocation::Zone(flags) => flags.call(),
         Invocation::Soak(flags) => flags.call(),
         Invocation::Dynamics(flags) => flags.call(),
+        Invocation::LoadChart(flags) => flags.call(),
         Invocation::Help(_) | Invocation::Tidy => panic!("{line} runs no child"),
     };
     let words = call.cargo_arguments();
@@ -53,6 +54,7 @@ fn flags_reach_the_child_in_one_form() {
                  --timing fastest --hz 500"
             ),
         ),
+        ("load-chart", format!("{KINEMATICS} load-chart")),
         (
             "zone --json --joint lift --position 0.3 --velocity -0.05",
             format!("{KINEMATICS} zone --joint lift_joint --position 0.3 --velocity -0.05 --json"),
@@ -166,4 +168,20 @@ fn joint_names_are_the_crane_s() {
     let names: Vec<&str> =
         actuators.split("joint: \"").skip(1).map(|rest| &rest[..rest.find('"').unwrap()]).collect();
     assert_eq!(names, JOINTS);
+}
+
+#[test]
+fn a_load_chart_builds_with_pictures_only_if_one_is_asked_for() {
+    let line = cargo_line("load-chart --svg /tmp/load.svg --json /tmp/load.json");
+    assert!(line.contains("--no-default-features --features figures --bin kinematics"), "{line}");
+    assert!(line.ends_with("load-chart --json /tmp/load.json --svg /tmp/load.svg"), "{line}");
+    assert!(!cargo_line("load-chart --json /tmp/load.json").contains("figures"));
+}
+
+#[test]
+fn another_crane_has_other_joints() {
+    let config = concat!(env!("CARGO_MANIFEST_DIR"), "/../assets/config/excavator.ron");
+    let line = format!("zone --joint bucket_joint --position 0 --velocity 0 --config {config}");
+    assert!(cargo_line(&line).contains("--joint bucket_joint"));
+    assert!(refusal("zone --joint bucket_joint --position 0 --velocity 0").contains("bucket_joint"));
 }

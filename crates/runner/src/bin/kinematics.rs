@@ -1,4 +1,4 @@
-//! Commands about motion alone: `tables`, `profile`, `zone`, `soak`, `dynamics`. Builds without the learner.
+//! Commands about motion alone: `tables`, `profile`, `zone`, `soak`, `dynamics`, `load-chart`. Builds without the learner.
 #![forbid(unsafe_code)]
 
 use std::path::{Path, PathBuf};
@@ -11,7 +11,7 @@ use runner::arguments::Arguments;
 use runner::command;
 use runner::config::{self, ConfigSpec};
 use runner::kinematics::soak::{self, SoakRequest};
-use runner::kinematics::{self, ProfileRequest, Tables, ZoneFormat};
+use runner::kinematics::{self, LoadChartFiles, ProfileRequest, Tables, ZoneFormat};
 
 fn main() -> ExitCode {
     command::run(dispatch)
@@ -67,7 +67,15 @@ fn dispatch(command: &str, words: Vec<String>) -> Result<String> {
             arguments.finish()?;
             soak::soak(&request)
         }
-        _ => bail!("no command is called '{command}'; there are tables, zone, profile, soak and dynamics"),
+        "load-chart" => {
+            let config = configuration(&mut arguments)?;
+            let files = LoadChartFiles { json: arguments.optional("json")?, svg: arguments.optional("svg")? };
+            arguments.finish()?;
+            kinematics::load_chart(&config, &files)
+        }
+        _ => bail!(
+            "no command is called '{command}'; there are tables, zone, profile, soak, dynamics and load-chart"
+        ),
     }
 }
 
