@@ -4,7 +4,7 @@
 use std::hint::black_box;
 
 use criterion::{BenchmarkGroup, Criterion, criterion_group, criterion_main, measurement::WallTime};
-use jbtg::{Interval, Limits, LimitsSpec, Planner, PlannerSpec, Shape, Timing, Trajectory};
+use jbtg::{Interval, Limits, LimitsSpec, MAX_SEGMENTS, Planner, PlannerSpec, Shape, Timing, Trajectory};
 
 /// The paper's telescope, with limits that differ between the directions.
 fn planner(shape: Shape, timing: Timing) -> Planner {
@@ -86,6 +86,14 @@ fn state_at(c: &mut Criterion) {
         |from: f64, duration: f64| (0..64).map(|i| from + duration * f64::from(i) / 64.0).collect::<Vec<_>>();
     over(&mut group, "first_phase", &times(0.0, first.duration()), |time| step.state_at(*time));
     over(&mut group, "last_phase", &times(last.start(), last.duration()), |time| step.state_at(*time));
+    // A detour has the most phases, and a search from the last one passes them all.
+    let limits = *planner.limits();
+    let spec = PlannerSpec { limits, shape: Shape::Smoothstep, timing: Timing::Stretched, period: 0.6 };
+    let slow = Planner::try_from(spec).expect("a period of many ramps");
+    let detour = slow.waypoint(0.3, 0.0, 0.0).expect("a reachable velocity");
+    assert_eq!(detour.segments().len(), MAX_SEGMENTS, "a detour of seven phases");
+    let first = times(0.0, detour.segments()[0].duration());
+    over(&mut group, "first_of_seven", &first, |time| detour.state_at(*time));
     let mixed: Vec<f64> =
         (0..256).map(|i| 0.05 * (f64::from(i) * 0.618_033_988_749_895_f64).fract()).collect();
     over(&mut group, "any_phase", &mixed, |time| step.state_at(*time));

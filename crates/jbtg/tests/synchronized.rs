@@ -53,7 +53,7 @@ fn check_within(name: &str, found: Interval, limit: Interval) -> Result<(), Test
 }
 
 proptest! {
-    #![proptest_config(ProptestConfig { max_global_rejects: u32::MAX, ..ProptestConfig::with_cases(5_000) })]
+    #![proptest_config(ProptestConfig { max_global_rejects: u32::MAX, ..ProptestConfig::with_cases(2_000) })]
 
     #[test]
     fn joints_in_step_move_on_a_straight_line_of_velocities(joints in courses(), ends in ends()) {
