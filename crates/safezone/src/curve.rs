@@ -34,15 +34,15 @@ pub(crate) struct Curve<'a> {
 struct Parabola {
     first: f64,
     vertex: f64,
+    vertex_squared: f64,
     growth: f64,
 }
 
 impl Parabola {
-    /// Steps within `distance` beyond the first, a real number; it never falls as the distance grows. Negative below `first`.
+    /// Steps within `distance` ≥ `first` beyond the first one, a real number that never falls as the distance grows.
     #[inline]
     fn steps_beyond_the_first(&self, distance: f64) -> f64 {
-        let beyond = (distance - self.first) * self.growth;
-        sqrt((self.vertex * self.vertex + beyond).max(0.0)) - self.vertex
+        sqrt(self.vertex_squared + (distance - self.first) * self.growth) - self.vertex
     }
 }
 
@@ -71,8 +71,9 @@ impl<'a> Curve<'a> {
         let growth_per_step = spacing * subdivisions as f64 * period;
         let first = if steps > 0 { at(1) } else { f64::INFINITY };
         let second = if steps > 1 { at(2) - first } else { growth_per_step };
+        let vertex = second / growth_per_step - 0.5;
         let parabola =
-            Parabola { first, vertex: second / growth_per_step - 0.5, growth: 2.0 / growth_per_step };
+            Parabola { first, vertex, vertex_squared: vertex * vertex, growth: 2.0 / growth_per_step };
         for step in 2..=steps {
             let error = parabola.steps_beyond_the_first(at(step)) - (step - 1) as f64;
             if !(-0.5..=0.5).contains(&error) {
@@ -96,7 +97,7 @@ impl<'a> Curve<'a> {
     /// Index of the knot below `speed` > 0, so that there is one above.
     #[inline]
     fn index(&self, speed: f64) -> usize {
-        ((speed * self.per_spacing) as usize).min(self.knots.len() - 2)
+        ((speed * self.per_spacing) as u32 as usize).min(self.knots.len() - 2)
     }
 
     /// Distance and slope \[s\] at knot `index`, the last but one at most.
@@ -140,7 +141,9 @@ impl<'a> Curve<'a> {
         let (mut low, mut high) = self.step_around(knots, distance);
         while high - low > 1 {
             let middle = low + (high - low) / 2;
-            (low, high) = if knots[middle].distance <= distance { (middle, high) } else { (low, middle) };
+            let is_below = knots[middle].distance <= distance;
+            low = if is_below { middle } else { low };
+            high = if is_below { high } else { middle };
         }
         let (below, above) = (knots[low], knots[high]);
         let share = (distance - below.distance) / (above.distance - below.distance);
@@ -153,7 +156,7 @@ impl<'a> Curve<'a> {
         let last = knots.len() - 1;
         let mut step = 0;
         if distance >= self.parabola.first {
-            step = 1 + (self.parabola.steps_beyond_the_first(distance) as usize).min(self.steps - 1);
+            step = 1 + (self.parabola.steps_beyond_the_first(distance) as u32 as usize).min(self.steps - 1);
             if knots[step * self.subdivisions].distance > distance {
                 step -= 1;
             } else if step < self.steps && knots[(step + 1) * self.subdivisions].distance <= distance {

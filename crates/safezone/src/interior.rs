@@ -26,8 +26,7 @@ impl Approach<'_> {
             return lowest;
         }
         let kept = braking.limit - 0.5 * braking.guard;
-        let farthest =
-            self.position + self.velocity.max(0.0) * braking.period + braking.reverse * braking.step;
+        let farthest = self.position + self.velocity.max(0.0) * braking.period + braking.overshoot;
         if farthest <= kept {
             lowest
         } else if turns_late {
@@ -47,7 +46,7 @@ impl Approach<'_> {
         let needed = match (self.is_outside(), self.velocity > 0.0) {
             (true, true) => 0.0,
             // The way back must not wait for the overshoot to fit.
-            (true, false) => braking.reverse * braking.step,
+            (true, false) => braking.overshoot,
             (false, _) => 1e-13 * braking.width,
         };
         let room = (kept - self.position).max(braking.distance(self.velocity) + needed);

@@ -27,7 +27,8 @@ pub(crate) struct Braking {
     per_step: f64,
     /// The period \[s\].
     pub(crate) period: f64,
-    per_period: f64,
+    /// Δ·T/2 [rad or m].
+    half_square: f64,
     /// 2/(Δ·T) [1 per rad or m].
     growth: f64,
     /// Full braking steps from the largest velocity.
@@ -40,6 +41,12 @@ pub(crate) struct Braking {
     last_step: f64,
     /// Excess of a step's interior over its ends, per velocity change \[s\]; 0 for the smoothstep.
     pub(crate) reverse: f64,
+    /// That excess for a change of Δ [rad or m].
+    pub(crate) overshoot: f64,
+    /// Steps downwards, to smaller velocities.
+    pub(crate) downwards: Line,
+    /// Steps upwards.
+    pub(crate) upwards: Line,
     /// Largest velocity that a step may end at [rad/s or m/s].
     pub(crate) velocity: f64,
     /// Width of the position interval [rad or m].
@@ -56,6 +63,24 @@ pub(crate) struct Braking {
     pub(crate) turning: Turning,
     /// Up to here no step within the velocity limits needs to know the position [rad or m].
     free_until: f64,
+}
+
+/// Steps with a lag of `lag` per velocity change, upwards or downwards: a step to v′ covers `gain`·v′ and `lag`·v. Together
+/// with the distance after it that is Δ·T/2·n² + `first`·n at v′ = nΔ, plus the overshoot from n = 1 on.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Line {
+    /// Lag per velocity change \[s\].
+    pub(crate) lag: f64,
+    /// T − lag \[s\].
+    pub(crate) gain: f64,
+    pub(crate) per_gain: f64,
+    /// Linear coefficient of the sum at knots [rad or m].
+    first: f64,
+    /// Slope of the sum between 0 and Δ \[s\].
+    slope: f64,
+    /// `first` in multiples of Δ·T.
+    vertex: f64,
+    vertex_squared: f64,
 }
 
 /// Numbers of a step that turns around within its period: its shape and its two ramps.
@@ -90,7 +115,21 @@ impl Braking {
         let reverse = authority.reverse_travel;
         let shape = planner.spec().shape;
         let stretched = planner.spec().timing == Timing::Stretched;
-        let brake = Lag::new(planner, away);
+        let (brake, climb) = (Lag::new(planner, away), Lag::new(planner, towards));
+        let line = |lag: f64| {
+            let (gain, half_square) = (period - lag, 0.5 * step * period);
+            let first = gain * step + brake.mean * step - half_square;
+            let vertex = first / (step * period);
+            Line {
+                lag,
+                gain,
+                per_gain: 1.0 / gain,
+                first,
+                slope: gain + brake.mean,
+                vertex,
+                vertex_squared: vertex * vertex,
+            }
+        };
         let (up, down) = (authority.ramp_up, authority.ramp_down);
         let turning = Turning {
             shape: shape.coefficients(),
@@ -103,13 +142,16 @@ impl Braking {
             step,
             per_step: 1.0 / step,
             period,
-            per_period: 1.0 / period,
+            half_square: 0.5 * step * period,
             growth: 2.0 / (step * period),
             most_steps: (velocity / step) as i64 as f64,
             last_step: brake.at(step),
             brake,
-            climb: Lag::new(planner, towards),
+            climb,
             reverse,
+            overshoot: reverse * step,
+            downwards: line(brake.mean),
+            upwards: line(climb.mean),
             velocity,
             width,
             rounding,
@@ -162,26 +204,22 @@ impl Braking {
         (velocity * self.per_step) as i64 as f64
     }
 
-    /// Knot `n` of the distance, n whole: its velocity, its distance, and the slope from there on \[s\]. Exact with
-    /// [`Timing::Stretched`].
+    /// The last knot n at which `line`'s displacement and the distance together are within `rest` > 0, but for rounding; at
+    /// most the one below the velocity limit. Exact with [`Timing::Stretched`].
     #[inline]
-    pub(crate) fn segment(&self, n: f64) -> (f64, f64, f64) {
-        let (overshoot, overshoot_slope) =
-            if n > 0.0 { (self.reverse * self.step, 0.0) } else { (0.0, self.reverse) };
-        let distance = n * (0.5 * (n - 1.0) * self.step * self.period + self.last_step) + overshoot;
-        (n * self.step, distance, n * self.period + self.brake.mean + overshoot_slope)
+    pub(crate) fn steps_within(&self, line: &Line, rest: f64) -> f64 {
+        let beyond = (rest - self.overshoot).max(0.0) * self.growth;
+        let steps = sqrt(line.vertex_squared + beyond) - line.vertex;
+        (steps.min(self.most_steps) as i64) as f64
     }
 
-    /// The last knot n at which `gain`·v plus the distance is within `rest` > 0, but for rounding; at most the one below
-    /// the velocity limit. Exact with [`Timing::Stretched`].
-    ///
-    /// With g = `gain` + l − T/2 that sum is Δ·(T·n²/2 + g·n) at knots, and the overshoot.
+    /// Knot `n` of `line`'s displacement and the distance together: its velocity, their sum, and its slope from there on
+    /// \[s\]. Exact with [`Timing::Stretched`].
     #[inline]
-    pub(crate) fn steps_within(&self, gain: f64, rest: f64) -> f64 {
-        let vertex = (gain + self.brake.mean) * self.per_period - 0.5;
-        let beyond = (rest - self.reverse * self.step).max(0.0) * self.growth;
-        let steps = sqrt(vertex * vertex + beyond) - vertex;
-        (steps.min(self.most_steps) as i64) as f64
+    pub(crate) fn knot(&self, line: &Line, n: f64) -> (f64, f64, f64) {
+        let (overshoot, overshoot_slope) = if n > 0.0 { (self.overshoot, 0.0) } else { (0.0, self.reverse) };
+        let sum = n * (n * self.half_square + line.first) + overshoot;
+        (n * self.step, sum, line.slope + n * self.period + overshoot_slope)
     }
 
     /// Whether every step within the velocity limits keeps the position limit and leaves room to brake.

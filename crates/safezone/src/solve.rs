@@ -3,7 +3,7 @@
 use jbtg::Interval;
 
 use crate::curve::Curve;
-use crate::side::Braking;
+use crate::side::{Braking, Line};
 
 /// Most Newton steps; each that leaves its bracket halves it, so that these suffice for the whole of double precision.
 const ROUNDS: u32 = 100;
@@ -54,31 +54,37 @@ impl Approach<'_> {
     /// The velocity at which the travel is `room`, in closed form.
     ///
     /// With [`Timing::Stretched`](jbtg::Timing) the step covers T·v′ − l·(v′ − v), one l for velocities above v and one for
-    /// those below, and the stopping distance is linear between braking steps. So the travel at braking steps lies
-    /// on a parabola, which tells between which two the solution is. An index that rounding puts off by one costs
-    /// nothing, since neighbouring lines meet there.
+    /// those below (the two agree at v, so that either tells on which side the solution lies), and the stopping
+    /// distance is linear between braking steps. So the travel at braking steps lies on a parabola, which tells
+    /// between which two the solution is. An index that rounding puts off by one costs nothing, since neighbouring
+    /// lines meet there.
     #[inline]
     fn solve_stretched(&self, room: f64) -> f64 {
-        let braking = self.braking;
-        let hold = self.velocity * braking.period + self.distance_and_slope(self.velocity).0;
-        let lag = if hold <= room { braking.climb.mean } else { braking.brake.mean };
-        self.solve_linear(lag, room)
+        let (downwards, upwards) = (&self.braking.downwards, &self.braking.upwards);
+        let velocity = self.solve_linear(downwards, room);
+        if velocity > self.velocity && upwards.lag != downwards.lag {
+            self.solve_linear(upwards, room)
+        } else {
+            velocity
+        }
     }
 
-    /// The velocity at which the travel is `room`, if steps had a lag of `lag` \[s\] per change in both directions.
+    /// The velocity at which the travel is `room`, if all steps were `line`'s.
     #[inline]
-    fn solve_linear(&self, lag: f64, room: f64) -> f64 {
-        let braking = self.braking;
-        let (gain, rest) = (braking.period - lag, room - lag * self.velocity);
+    fn solve_linear(&self, line: &Line, room: f64) -> f64 {
+        let rest = room - line.lag * self.velocity;
         if rest <= 0.0 {
-            return rest / gain;
+            return rest * line.per_gain;
         }
-        let steps = braking.steps_within(gain, rest);
-        let (velocity, distance, slope) = match self.table {
-            Some(curve) => curve.segment(steps as usize),
-            None => braking.segment(steps),
+        let n = self.braking.steps_within(line, rest);
+        let (velocity, sum, slope) = match self.table {
+            Some(curve) => {
+                let (velocity, distance, slope) = curve.segment(n as u32 as usize);
+                (velocity, line.gain * velocity + distance, line.gain + slope)
+            }
+            None => self.braking.knot(line, n),
         };
-        velocity + (rest - gain * velocity - distance) / (gain + slope)
+        velocity + (rest - sum) / slope
     }
 
     /// The velocity at which the travel is `room`, by Newton steps within a bracket, from the safe side.

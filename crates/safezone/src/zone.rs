@@ -15,7 +15,19 @@ const ROUNDING: f64 = 4.0 * f64::EPSILON;
 /// # Guarantee
 /// From a state whose range is [`RangeStatus::Safe`], whatever sequence of velocities is chosen from the ranges,
 /// every step keeps position, velocity, acceleration and jerk within their limits to 1e-12 of the interval's width,
-/// its interior included, and the range is never empty.
+/// its interior included, and the range is never empty. Braking, towards zero by as much as each period allows, is in
+/// every range, so a fail-safe may act at any time.
+///
+/// With N the periods that braking within the position interval takes at most, rounding costs N + 16 ulps of the
+/// largest position: the [guard](SafeZone::guard) that a chosen step keeps from the limit. From a start that keeps
+/// it no limit is exceeded at all; 1e-12 holds from any safe start as long as (N + 16)·s/W < 4500 for a largest
+/// position s and an interval W wide.
+///
+/// From any other state the range leads back, monotonically, and no further out than braking at once;
+/// [`SafeRange::status`] says which of the promises hold. To change limits while the joint moves, make a new zone and
+/// ask it from the next period on: nothing is carried over but the state.
+///
+/// `docs/guarantee.md` has the proof, for both timings and for limits that differ between the directions.
 ///
 /// Source: [P, § Safety Calculations], with three departures, without which the guarantee does not hold: the
 /// braking distance is that of braking in steps of one period; the zone is taken at the position that the very

@@ -8,6 +8,7 @@ mod paper;
 mod peers;
 mod properties;
 mod recovery;
+mod rounding;
 mod table_file;
 mod telescope;
 mod tolerance;

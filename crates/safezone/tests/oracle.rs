@@ -131,7 +131,7 @@ fn shares() -> impl Strategy<Value = f64> {
 }
 
 proptest! {
-    #![proptest_config(ProptestConfig { max_global_rejects: u32::MAX, ..ProptestConfig::with_cases(3000) })]
+    #![proptest_config(ProptestConfig { max_global_rejects: u32::MAX, ..ProptestConfig::with_cases(1000) })]
 
     #[test]
     fn a_range_is_as_wide_as_is_safe(planner in planners(), start in (shares(), shares())) {

@@ -21,7 +21,7 @@ fn shares() -> impl Strategy<Value = f64> {
 }
 
 proptest! {
-    #![proptest_config(cases(2_000))]
+    #![proptest_config(cases(1_000))]
 
     #[test]
     fn no_policy_leaves_any_limit(

@@ -19,7 +19,7 @@ fn actions() -> impl Strategy<Value = f64> {
 }
 
 proptest! {
-    #![proptest_config(ProptestConfig { max_global_rejects: u32::MAX, ..ProptestConfig::with_cases(5000) })]
+    #![proptest_config(ProptestConfig { max_global_rejects: u32::MAX, ..ProptestConfig::with_cases(1500) })]
 
     #[test]
     fn every_bit_pattern_has_a_range(planner in planners(), position in ANY, velocity in ANY, action in ANY) {

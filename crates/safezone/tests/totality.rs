@@ -74,7 +74,7 @@ fn knots() -> impl Strategy<Value = Vec<Knot>> {
 }
 
 proptest! {
-    #![proptest_config(ProptestConfig { max_global_rejects: u32::MAX, ..ProptestConfig::with_cases(5000) })]
+    #![proptest_config(ProptestConfig { max_global_rejects: u32::MAX, ..ProptestConfig::with_cases(2000) })]
 
     #[test]
     fn every_state_and_request_has_a_command(
