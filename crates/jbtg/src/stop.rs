@@ -14,13 +14,17 @@ use motion::Motion;
 /// meanwhile is lost in rounding.
 const SHORTEST: f64 = 1e-14;
 
-/// Whether a stop starts within the limits.
+/// Excess over a limit that counts as rounding, relative to the limits' width.
+const EXCESS: f64 = 1e-12;
+
+/// Whether a stop keeps the limits.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum StopStatus {
-    /// The whole stop keeps velocity, acceleration and jerk limits.
+    /// The whole stop keeps velocity, acceleration and jerk limits, to 1e-12 of their widths.
     WithinLimits,
-    /// The state is beyond the limit of this quantity (the first in the order of [`Quantity`]). Velocity and
-    /// acceleration come back monotonically; jerk is cut to its limit at once.
+    /// The stop is beyond the limit of this quantity (the first in the order of [`Quantity`]) for a while: because the
+    /// state is, or because its acceleration or jerk carry it there, however fast they are ended. Velocity and
+    /// acceleration come back without a detour; jerk is cut to its limit at once.
     Recovering(Quantity),
 }
 
@@ -31,7 +35,7 @@ pub struct Stop {
     pub trajectory: Trajectory,
     /// Time of the interrupted step at which `trajectory` takes over \[s\]; 0 where no step was given.
     pub begin: f64,
-    /// Whether it starts within the limits.
+    /// Whether it keeps the limits.
     pub status: StopStatus,
 }
 
@@ -112,7 +116,7 @@ impl Planner {
         if !(end.is_finite() && trajectory.segments().iter().all(is_finite)) {
             return Err(StopError::OutOfScale);
         }
-        Ok(Stop { trajectory, begin: 0.0, status: self.status(state) })
+        Ok(Stop { trajectory, begin: 0.0, status: self.status(state, &trajectory) })
     }
 
     /// The stop from `time` in `step` on that never travels farther, in either direction, than finishing the step and
@@ -149,14 +153,18 @@ impl Planner {
         (1.5 * a / (MIN_RAMP_SHARE * self.period()), SHORTEST * ramp)
     }
 
-    fn status(&self, state: State) -> StopStatus {
-        let limits = self.limits();
+    fn status(&self, state: State, trajectory: &Trajectory) -> StopStatus {
+        let (limits, extrema) = (self.limits(), trajectory.extrema());
+        let jerk = Interval::new(state.jerk, state.jerk);
         let named = [
-            (Quantity::Velocity, state.velocity, limits.velocity()),
-            (Quantity::Acceleration, state.acceleration, limits.acceleration()),
-            (Quantity::Jerk, state.jerk, limits.jerk()),
+            (Quantity::Velocity, extrema.velocity, limits.velocity()),
+            (Quantity::Acceleration, extrema.acceleration, limits.acceleration()),
+            (Quantity::Jerk, jerk, limits.jerk()),
         ];
-        let beyond = named.into_iter().find(|(_, value, limit)| !limit.contains(*value));
+        let is_beyond = |found: Interval, limit: Interval| {
+            (found.max - limit.max).max(limit.min - found.min) > EXCESS * limit.width()
+        };
+        let beyond = named.into_iter().find(|(_, found, limit)| is_beyond(*found, *limit));
         beyond.map_or(StopStatus::WithinLimits, |(quantity, ..)| StopStatus::Recovering(quantity))
     }
 }

@@ -1,5 +1,7 @@
 //! Integration tests: every file in this folder is a module of this one program.
 
+mod bernstein;
+mod issues;
 mod no_allocation;
 mod optimum;
 mod paper;

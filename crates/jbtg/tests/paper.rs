@@ -2,7 +2,10 @@
 
 use std::f64::consts::PI;
 
-use jbtg::{Direction, Interval, Limits, LimitsSpec, Planner, PlannerSpec, Shape, Timing, Trajectory};
+use jbtg::{
+    DetourCase, Direction, Interval, Limits, LimitsSpec, Planner, PlannerSpec, PulseKind, Shape, Timing,
+    Trajectory,
+};
 use nalgebra::{SMatrix, SVector};
 
 use crate::tolerance;
@@ -262,4 +265,102 @@ fn zero_acceleration_at_every_step_leaves_70_percent_at_50_ms_and_33_at_20_ms() 
     }
     assert!(planner(Shape::Smoothstep, Timing::Stretched, 0.02).is_period_short());
     assert!(!planner(Shape::Smoothstep, Timing::Stretched, 0.05).is_period_short());
+}
+
+/// Peak acceleration of the planner's sine ramps: what the limit leaves beside the quintic's excess and the guard.
+const SINE_PEAK: f64 = ACCELERATION / (1.0 + SINE_EXCESS) * (1.0 - 1e-14);
+
+/// The time of a speed ramp by `change` and its kind, [P, Alg. 1] or [P, Alg. 2].
+fn speed_ramp(change: f64) -> (f64, PulseKind) {
+    let dt_max = PI * SINE_PEAK / (2.0 * JERK);
+    if change > dt_max * SINE_PEAK {
+        (2.0 * dt_max + (change - dt_max * SINE_PEAK) / SINE_PEAK, PulseKind::Msap)
+    } else {
+        (2.0 * (PI * change / (2.0 * JERK)).sqrt(), PulseKind::Map)
+    }
+}
+
+/// A detour in the positive direction: its case and kinds, that both ramps and the cruise take exactly dt by the paper's
+/// own times, and that it leads there.
+#[track_caller]
+fn check_detour(
+    (dt, v1, v2): (f64, f64, f64),
+    (case, rise, fall): (DetourCase, Option<PulseKind>, Option<PulseKind>),
+    has_cruise: bool,
+) {
+    let planner = planner(Shape::SineQuintic, Timing::Fastest, dt);
+    let detour = planner.detour(v1, v2, Direction::Increasing).expect("a reachable velocity");
+    assert_eq!((detour.case, detour.rise, detour.fall), (case, rise, fall), "{detour:?}");
+    assert_eq!(detour.cruise > 0.0, has_cruise, "{detour:?}");
+    assert_eq!(has_cruise, detour.peak > 0.999 * VELOCITY, "a cruise is at v_max: {detour:?}");
+    let (up, down) = (speed_ramp(detour.peak - v1), speed_ramp(detour.peak - v2));
+    check_close("dt", up.0 + detour.cruise + down.0, dt, tolerance::CLOSED_FORM);
+    assert!(rise.is_none_or(|kind| kind == up.1) && fall.is_none_or(|kind| kind == down.1));
+    let step = planner.waypoint(0.3, v1, v2).expect("a reachable velocity");
+    assert_eq!((step.end().velocity, step.duration()), (v2, dt));
+    // With equal limits a ramp covers the mean of its velocities.
+    let peak = detour.peak;
+    let distance = 0.5 * (v1 + peak) * up.0 + peak * detour.cruise + 0.5 * (peak + v2) * down.0;
+    check_close("displacement", step.end().position - 0.3, distance, tolerance::CLOSED_FORM * 0.5 / distance);
+}
+
+#[test]
+fn algorithm_3_case_1_is_one_speed_ramp() {
+    let top = planner(Shape::SineQuintic, Timing::Fastest, 0.2).velocity().max;
+    let (msap, map) = (Some(PulseKind::Msap), Some(PulseKind::Map));
+    check_detour((0.2, 0.05, top), (DetourCase::One, msap, None), true);
+    check_detour((0.2, top - 0.01, top), (DetourCase::One, map, None), true);
+    check_detour((0.2, top, 0.05), (DetourCase::One, None, msap), true); // cruises first
+    check_detour((0.2, top, top), (DetourCase::Three, None, None), true);
+}
+
+#[test]
+fn algorithm_3_case_2_goes_through_a_peak() {
+    let (msap, map) = (Some(PulseKind::Msap), Some(PulseKind::Map));
+    check_detour((0.3, 0.02, 0.05), (DetourCase::Two, msap, msap), true); // 2.2a-i
+    check_detour((0.15, 0.02, 0.05), (DetourCase::Two, msap, msap), false); // 2.2a-ii
+    check_detour((0.07, 0.02, 0.05), (DetourCase::Two, msap, map), false); // 2.2b
+    check_detour((0.07, 0.05, 0.02), (DetourCase::Two, map, msap), false); // not in the paper: v₂ < v₁
+    check_detour((0.03, 0.02, 0.021), (DetourCase::Two, map, map), false); // 2.2b, too
+    check_detour((0.3, 0.02, 0.14), (DetourCase::Two, msap, map), true); // 2.3a
+    check_detour((0.16, 0.02, 0.145), (DetourCase::Two, msap, map), false); // 2.3b
+    check_detour((0.3, -0.05, 0.02), (DetourCase::Two, msap, msap), false); // v₁ < 0 ≤ v₂
+}
+
+#[test]
+fn algorithm_3_case_4_is_symmetric() {
+    let (msap, map) = (Some(PulseKind::Msap), Some(PulseKind::Map));
+    check_detour((0.4, 0.05, 0.05), (DetourCase::Four, msap, msap), true);
+    check_detour((0.1, 0.05, 0.05), (DetourCase::Four, msap, msap), false);
+    check_detour((0.04, 0.05, 0.05), (DetourCase::Four, map, map), false);
+    check_detour((0.1, 0.14, 0.14), (DetourCase::Four, map, map), true);
+    let step = planner(Shape::Smoothstep, Timing::Fastest, 0.1).waypoint(0.3, 0.05, 0.05).unwrap();
+    let peak = step.state_at(0.05).velocity;
+    for i in 0..50 {
+        let (before, after) = (step.state_at(f64::from(i) * 1e-3), step.state_at(0.1 - f64::from(i) * 1e-3));
+        assert!((before.velocity - after.velocity).abs() <= 1e-15, "at {i} ms");
+    }
+    // Four ramps of 1.5·A/J and two acceleration cruises.
+    check_close("v_peak", peak, 0.05 + ACCELERATION * (0.05 - 0.015), tolerance::CLOSED_FORM);
+}
+
+#[test]
+fn algorithm_3_turns_towards_v_min_for_a_negative_end() {
+    let planner = planner(Shape::SineQuintic, Timing::Fastest, 0.15);
+    for (v1, v2) in [(0.02, -0.03), (-0.02, -0.05), (-0.05, -0.05)] {
+        let (down, up) = (planner.waypoint(0.0, v1, v2).unwrap(), planner.waypoint(0.0, -v1, -v2).unwrap());
+        assert_eq!(down.end().position, -up.end().position);
+        assert_eq!(down.extrema().velocity, up.extrema().velocity.mirrored());
+        assert!(down.extrema().velocity.min < v2);
+    }
+}
+
+/// Eight control points, seven quintics.
+#[test]
+fn algorithm_3_takes_up_to_eight_control_points() {
+    let planner = planner(Shape::SineQuintic, Timing::Fastest, 0.4);
+    let step = planner.waypoint(0.3, 0.02, 0.05).unwrap();
+    assert_eq!(step.control_points().count(), 8);
+    assert_eq!(step.segments().len(), jbtg::MAX_SEGMENTS);
+    check_eqmat(&step, Shape::SineQuintic);
 }

@@ -25,7 +25,7 @@ pub(super) const ALLOWED: &[Allowed] = &[
     Allowed {
         name: "jbtg",
         optional: &["libm", "proptest", "serde"],
-        dev: &["allocation-counter", "criterion", "jbtg", "nalgebra", "proptest", "ron"],
+        dev: &["allocation-counter", "criterion", "jbtg", "nalgebra", "num-rational", "proptest", "ron"],
         ..NOTHING
     },
     Allowed {
