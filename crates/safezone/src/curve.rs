@@ -132,7 +132,7 @@ impl<'a> Curve<'a> {
     pub(crate) fn max_speed(&self, distance: f64) -> f64 {
         let knots: &[Knot] = &self.knots;
         let last = knots.len() - 1;
-        if distance.is_nan() || distance <= 0.0 {
+        if !(distance > 0.0) {
             return 0.0;
         }
         if distance >= knots[last].distance {
