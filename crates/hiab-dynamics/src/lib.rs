@@ -4,11 +4,13 @@
 //! which are actuators). Its coordinates are the actuators' positions: rotations of hinges \[rad\] and strokes of
 //! cylinders \[m\]. Loops are eliminated in closed form, so cylinder masses count, constraints hold to rounding, and
 //! there is no drift to stabilise. Everything that changes from state to state lives in a [`Data`]; after
-//! [`CraneModel::new_data`] nothing allocates but [`CraneModel::evaluate`] and an error.
+//! [`CraneModel::new_data`] nothing allocates but [`CraneModel::evaluate`], the statics and an error.
 //!
 //! - Kinematics: [`CraneModel::update_kinematics`], then `tip_pose`, `tip_velocity`, `tip_jacobian`, `tip_drift`,
 //!   `link_pose`, and the tree joints in [`Data`].
-//! - Dynamics: [`CraneModel::update_dynamics`], `forward_dynamics`, `inverse_dynamics`, energies.
+//! - Dynamics: [`CraneModel::update_dynamics`], `forward_dynamics`, `inverse_dynamics`, energies, `coriolis_matrix`.
+//! - At the tip: [`CraneModel::tip_inertia`], `tip_mobility`, `apparent_mass`.
+//! - Statics: [`CraneModel::largest_payload`], [`CraneModel::load_chart`].
 //! - Time: [`CraneModel::semi_implicit_euler`], [`CraneModel::rk4`].
 //! - Drives: a [`Plant`] adds reflected inertia and friction ([`CraneModel::with_plant`]), `with_payload` a mass at
 //!   the tip.
