@@ -311,19 +311,26 @@ fn a_limit_lowered_in_front_of_the_joint_goes_through_every_status_in_order() {
     }
 }
 
-/// A turning step from outside: before, its turning point could lie beyond where braking at once stops.
+/// A turning step from outside: otherwise its turning point could lie beyond where braking at once stops, by a fastest step's
+/// slower start or, from next to rest, by the sine's reversal.
 #[test]
 fn a_turning_step_from_outside_turns_no_later_than_braking() {
-    let planner = telescope::planner(Shape::Smoothstep, Timing::Fastest);
-    let zone = SafeZone::closed_form(planner).unwrap();
-    for i in 1..=300 {
-        let velocity = 0.034 * f64::from(i) / 300.0;
-        let position = 0.501;
-        let range = zone.range(position, velocity);
-        assert_eq!((range.max, range.status), (0.0, RangeStatus::PositionOutside));
-        let peak = planner.ramp(position, velocity, range.min).unwrap().extrema().position.max;
-        let excess = peak - (position + zone.stopping_distance(velocity));
-        assert!(excess <= 4.0 * f64::EPSILON, "{velocity} m/s to {}: {excess:e} m", range.min);
-        assert!(range.min < 0.0, "braking is the only choice");
+    for (shape, timing) in telescope::ALL {
+        let planner = telescope::planner(shape, timing);
+        let zone = SafeZone::closed_form(planner).unwrap();
+        let slow = (1..=40).map(|i| 0.034 * 0.6_f64.powi(i));
+        for velocity in (1..=300).map(|i| 0.034 * f64::from(i) / 300.0).chain(slow) {
+            let position = 0.501;
+            let range = zone.range(position, velocity);
+            assert_eq!((range.max, range.status), (0.0, RangeStatus::PositionOutside));
+            let peak = planner.ramp(position, velocity, range.min).unwrap().extrema().position.max;
+            let excess = peak - (position + zone.stopping_distance(velocity));
+            assert!(
+                excess <= 4.0 * f64::EPSILON,
+                "{shape:?} {timing:?} {velocity} m/s to {}: {excess:e} m",
+                range.min
+            );
+            assert!(range.min < 0.0, "{shape:?} {timing:?} {velocity} m/s: braking is the only choice");
+        }
     }
 }
