@@ -6,7 +6,7 @@ use std::path::PathBuf;
 #[cfg(feature = "figures")]
 use anyhow::Context;
 use anyhow::{Result, anyhow, bail, ensure};
-use hiab_dynamics::{Actuator, Axis, CraneModel, LoadChart, LoadChartSpec};
+use hiab_dynamics::{Actuator, Axis, CraneModel, LoadChart, LoadChartSpec, LoadPoint};
 use serde::Serialize;
 
 use crate::config::{ConfigSpec, read_ron};
@@ -32,9 +32,11 @@ pub struct LoadChartFiles {
 /// The chart with names, as the JSON file has it.
 #[derive(Serialize)]
 struct NamedChart<'a> {
-    actuators: Vec<&'a str>,
-    #[serde(flatten)]
-    chart: &'a LoadChart,
+    /// What `limited_by` and `position` count.
+    actuators: &'a [&'a str],
+    x: Axis,
+    z: Axis,
+    points: &'a [Option<LoadPoint>],
 }
 
 /// Charts the largest payload that the configured crane holds at rest, held joints where the task holds them, over the
@@ -52,7 +54,8 @@ pub fn load_chart(config: &ConfigSpec, files: &LoadChartFiles) -> Result<String>
     let chart = model.load_chart(&LoadChartSpec { x, z, moving, posture, samples: SAMPLES })?;
     let actuators: Vec<&str> = model.actuators().iter().map(Actuator::name).collect();
     if let Some(path) = &files.json {
-        let named = NamedChart { actuators: actuators.clone(), chart: &chart };
+        let LoadChart { x, z, points } = &chart;
+        let named = NamedChart { actuators: &actuators, x: *x, z: *z, points };
         store::write_whole(path, (serde_json::to_string(&named)? + "\n").as_bytes())?;
     }
     if let Some(path) = &files.svg {
@@ -90,9 +93,7 @@ fn axis(values: impl Iterator<Item = f64> + Clone) -> Axis {
 fn summary(chart: &LoadChart, actuators: &[&str]) -> Result<String> {
     let place = |index: usize| (chart.x.value(index % chart.x.points), chart.z.value(index / chart.x.points));
     let points = || chart.points.iter().enumerate().filter_map(|(i, point)| Some((i, point.as_ref()?)));
-    let payload = |a: &(usize, &hiab_dynamics::LoadPoint), b: &(usize, &hiab_dynamics::LoadPoint)| {
-        a.1.payload.total_cmp(&b.1.payload)
-    };
+    let payload = |a: &(usize, &LoadPoint), b: &(usize, &LoadPoint)| a.1.payload.total_cmp(&b.1.payload);
     let (Some(least), Some(greatest)) = (points().min_by(payload), points().max_by(payload)) else {
         bail!("the crane holds itself nowhere in its workspace: check effort limits and masses");
     };
