@@ -176,7 +176,8 @@ impl Planner {
     /// Velocities that one period can reach from `velocity` [rad/s or m/s], within the velocity limits.
     ///
     /// Never empty. From a velocity beyond a limit it holds what leads back fastest: everything reachable inside
-    /// the limits, or the one reachable velocity nearest to them. NaN gives NaN ends, an infinity itself.
+    /// the limits, or the one reachable velocity nearest to them. The limit on the other side keeps so much more
+    /// distance as a change beyond the whole interval overshoots more. NaN gives NaN ends, an infinity itself.
     #[must_use]
     #[inline]
     pub fn reachable(&self, velocity: f64) -> Interval {
@@ -184,12 +185,22 @@ impl Planner {
         let highest = highest_within(velocity, self.increasing.velocity_change);
         let lowest = -highest_within(-velocity, self.decreasing.velocity_change);
         if velocity > max {
-            return Interval::new(larger(min, lowest), larger(max, lowest));
+            let opposite = smaller(min + self.further_overshoot(velocity - max), max);
+            return Interval::new(larger(opposite, lowest), larger(max, lowest));
         }
         if velocity < min {
-            return Interval::new(smaller(min, highest), smaller(max, highest));
+            let opposite = larger(max - self.further_overshoot(min - velocity), min);
+            return Interval::new(smaller(min, highest), smaller(opposite, highest));
         }
         Interval::new(larger(min, lowest), smaller(max, highest))
+    }
+
+    /// By how much a change that exceeds the width of the velocity interval by `excess` may overshoot more than the
+    /// interval's own margin allows for [rad/s or m/s]. 0 for [`Shape::Smoothstep`].
+    fn further_overshoot(&self, excess: f64) -> f64 {
+        let limits = self.spec.limits.velocity();
+        let margin = larger(limits.max - self.velocity.max, self.velocity.min - limits.min);
+        margin * (excess / self.velocity.width())
     }
 
     /// Displacement of the step from `v1` to `v2` over one period [rad or m]: exactly what [`Planner::ramp`] adds

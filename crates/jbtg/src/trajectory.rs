@@ -95,7 +95,7 @@ impl Trajectory {
 
     /// The same motion in the opposite direction, bit for bit.
     pub(crate) fn mirrored(mut self) -> Self {
-        for segment in &mut self.segments[..self.count] {
+        for segment in self.segments.iter_mut().take(self.count) {
             segment.coefficients = segment.coefficients.map(|c| 0.0 - c);
         }
         let State { position, velocity, .. } = self.end;

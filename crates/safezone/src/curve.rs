@@ -90,8 +90,14 @@ impl<'a> Curve<'a> {
     /// The last knot's velocity [rad/s or m/s].
     #[inline]
     pub(crate) fn last_velocity(&self) -> f64 {
-        let knots: &[Knot] = &self.knots;
-        knots[knots.len() - 1].velocity
+        self.knots.last().map_or(0.0, |knot| knot.velocity)
+    }
+
+    /// The knot at `index`; infinitely far beyond the last one, so that no index can panic.
+    #[inline]
+    fn knot(&self, index: usize) -> Knot {
+        const BEYOND: Knot = Knot { distance: f64::INFINITY, velocity: f64::INFINITY };
+        self.knots.get(index).copied().unwrap_or(BEYOND)
     }
 
     /// Index of the knot below `speed` > 0, so that there is one above.
@@ -103,9 +109,8 @@ impl<'a> Curve<'a> {
     /// Distance and slope \[s\] at knot `index`, the last but one at most.
     #[inline]
     pub(crate) fn segment(&self, index: usize) -> (f64, f64, f64) {
-        let knots: &[Knot] = &self.knots;
-        let index = index.min(knots.len() - 2);
-        let (low, high) = (knots[index], knots[index + 1]);
+        let index = index.min(self.knots.len() - 2);
+        let (low, high) = (self.knot(index), self.knot(index + 1));
         (low.velocity, low.distance, (high.distance - low.distance) * self.per_spacing)
     }
 
@@ -130,36 +135,35 @@ impl<'a> Curve<'a> {
     /// right step or a neighbour of it. Within a step the knots are halved ⌈log₂ subdivisions⌉ times.
     #[inline]
     pub(crate) fn max_speed(&self, distance: f64) -> f64 {
-        let knots: &[Knot] = &self.knots;
-        let last = knots.len() - 1;
+        let last = self.knot(self.knots.len() - 1);
         if !(distance > 0.0) {
             return 0.0;
         }
-        if distance >= knots[last].distance {
-            return knots[last].velocity;
+        if distance >= last.distance {
+            return last.velocity;
         }
-        let (mut low, mut high) = self.step_around(knots, distance);
+        let (mut low, mut high) = self.step_around(distance);
         while high - low > 1 {
             let middle = low + (high - low) / 2;
-            let is_below = knots[middle].distance <= distance;
+            let is_below = self.knot(middle).distance <= distance;
             low = if is_below { middle } else { low };
             high = if is_below { high } else { middle };
         }
-        let (below, above) = (knots[low], knots[high]);
+        let (below, above) = (self.knot(low), self.knot(high));
         let share = (distance - below.distance) / (above.distance - below.distance);
         ((low as f64 + share) * self.spacing).min(above.velocity)
     }
 
     /// The knots that bound the braking step in which `distance` lies, less than the last knot's.
     #[inline]
-    fn step_around(&self, knots: &[Knot], distance: f64) -> (usize, usize) {
-        let last = knots.len() - 1;
+    fn step_around(&self, distance: f64) -> (usize, usize) {
+        let last = self.knots.len() - 1;
         let mut step = 0;
         if distance >= self.parabola.first {
             step = 1 + (self.parabola.steps_beyond_the_first(distance) as u32 as usize).min(self.steps - 1);
-            if knots[step * self.subdivisions].distance > distance {
+            if self.knot(step * self.subdivisions).distance > distance {
                 step -= 1;
-            } else if step < self.steps && knots[(step + 1) * self.subdivisions].distance <= distance {
+            } else if step < self.steps && self.knot((step + 1) * self.subdivisions).distance <= distance {
                 step += 1;
             }
         }

@@ -7,6 +7,7 @@ use proptest::prelude::*;
 use safezone::{FailSafeReason, RangeStatus, Request, SafeZone, Source};
 
 use crate::adversary::safe_state;
+use crate::tolerance::LIMIT;
 
 fn least_change(planner: &Planner) -> f64 {
     let [up, down] =
@@ -62,6 +63,29 @@ proptest! {
             (position, velocity) = (step.end().position, step.end().velocity);
         }
         prop_assert!(false, "still {velocity:e} for {bounds:?}");
+    }
+
+    #[test]
+    fn a_way_back_from_too_fast_keeps_the_opposite_velocity_limit(
+        planner in planners(),
+        share in 0.0..=1.0,
+        excess in prop_oneof![-1e-4..1e-4, 0.0..5.0],
+        upward in any::<bool>(),
+    ) {
+        let Ok(zone) = SafeZone::closed_form(planner) else { return Ok(()) };
+        let (ends, limits) = (planner.velocity(), planner.limits().velocity());
+        let velocity =
+            if upward { ends.max + excess * ends.width() } else { ends.min - excess * ends.width() };
+        let position = planner.limits().position();
+        let range = zone.range(position.min + share * position.width(), velocity);
+        if range.status == RangeStatus::Safe {
+            prop_assert!(ends.contains(velocity), "{velocity:e} overshoots {limits:?}");
+        }
+        for next in [range.min, range.max] {
+            let found = planner.ramp(0.5 * (position.min + position.max), velocity, next)?.extrema().velocity;
+            let beyond = if upward { limits.min - found.min } else { found.max - limits.max };
+            prop_assert!(beyond <= LIMIT * limits.width(), "{velocity:e} to {next:e}: {beyond:e}");
+        }
     }
 
     #[test]

@@ -51,6 +51,8 @@ impl Trust {
     ) -> Result<Self, Fault> {
         match (self, range.status) {
             (Self::Promised, RangeStatus::Safe) => Ok(self),
+            // From a start within the guard, far from 0, rounding may come to light on the way; the limit stays.
+            (Self::Promised, RangeStatus::CannotStop) if is_rounding(zone, (position, velocity)) => Ok(self),
             (Self::Promised, _) => Err(Fault::Status),
             (Self::New | Self::Recovering(_), RangeStatus::Safe) => {
                 check_status(zone, (position, velocity), range.status)?;
@@ -77,14 +79,22 @@ impl Recovery {
             // Outside, rounding and the overshoot of the ramp's shape come on top.
             hull = Interval::new(hull.min - zone.guard(Side::Lower), hull.max + zone.guard(Side::Upper));
         }
-        let bounds = limits.velocity();
-        let margin = (bounds.max - zone.planner().velocity().max).max(0.0);
+        let (bounds, ends) = (limits.velocity(), zone.planner().velocity());
         let mut fastest = bounds;
-        if !bounds.contains(velocity) {
+        if !ends.contains(velocity) {
+            // A change of the whole interval overshoots by the margin that the planner keeps.
+            let margin = (bounds.max - ends.max) / ends.width() * ends.including(velocity).width();
             fastest = bounds.including(velocity + velocity.signum() * margin);
         }
         Self { position: hull, velocity: fastest }
     }
+}
+
+/// Whether braking at once stops no further out than what counts as rounding.
+fn is_rounding(zone: &SafeZone<'_>, (position, velocity): (f64, f64)) -> bool {
+    let limits = zone.planner().limits().position();
+    let stop = position + velocity.signum() * zone.stopping_distance(velocity);
+    limits.max.max(stop) - limits.min.min(stop) <= (1.0 + MOST_EXCESS) * limits.width()
 }
 
 /// Whether the status says what is so, give or take the rounding that a zone allows for.
@@ -93,8 +103,7 @@ fn check_status(
     (position, velocity): (f64, f64),
     status: RangeStatus,
 ) -> Result<(), Fault> {
-    let limits = zone.planner().limits();
-    let interval = limits.position();
+    let interval = zone.planner().limits().position();
     let rounding = MOST_EXCESS * interval.width();
     let stop = position + velocity.signum() * zone.stopping_distance(velocity);
     let beyond = |p: f64, slack: f64| p > interval.max + slack || p < interval.min - slack;
@@ -106,7 +115,7 @@ fn check_status(
         RangeStatus::PositionOutside => beyond(position, 0.0),
         RangeStatus::Unknown => false,
     };
-    let is_too_fast = !limits.velocity().contains(velocity);
+    let is_too_fast = !zone.planner().velocity().contains(velocity);
     let is_plainly_safe = !beyond(position, -guard) && !beyond(stop, -guard) && !is_too_fast;
     let has_missed_speed = is_too_fast && status == RangeStatus::Safe;
     let has_cried_wolf = is_plainly_safe && status != RangeStatus::Safe;
