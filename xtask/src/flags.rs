@@ -136,6 +136,12 @@ pub(crate) const COMMANDS: &[Command] = &[
         example: "cargo xtask load-chart --svg load.svg",
     },
     Command {
+        name: "footprint",
+        summary: "Measure jbtg and safezone without an operating system, and prove them free of panics",
+        flags: &[],
+        example: "cargo xtask footprint",
+    },
+    Command {
         name: "tidy",
         summary: "Check the layering and what else clippy cannot see",
         flags: &[],
@@ -181,6 +187,7 @@ pub(crate) enum Invocation {
     Soak(Soak),
     Dynamics(Dynamics),
     LoadChart(LoadChart),
+    Footprint,
     Tidy,
 }
 
@@ -333,6 +340,7 @@ impl Invocation {
                 json: parsed.file("json")?,
                 svg: parsed.file("svg")?,
             }),
+            "footprint" => Self::Footprint,
             "tidy" => Self::Tidy,
             _ => Self::Help(None),
         })

@@ -9,6 +9,7 @@ mod args;
 mod dynamics;
 mod eval;
 mod flags;
+mod footprint;
 mod help;
 mod load_chart;
 mod profile;
@@ -56,6 +57,7 @@ fn dispatch(invocation: Invocation) -> anyhow::Result<ExitCode> {
         Invocation::Soak(flags) => flags.run(),
         Invocation::Dynamics(flags) => flags.run(),
         Invocation::LoadChart(flags) => flags.run(),
+        Invocation::Footprint => footprint::run(),
         Invocation::Tidy => tidy::run(),
     }
 }

@@ -24,7 +24,7 @@ fn cargo_line(line: &str) -> String {
         Invocation::Soak(flags) => flags.call(),
         Invocation::Dynamics(flags) => flags.call(),
         Invocation::LoadChart(flags) => flags.call(),
-        Invocation::Help(_) | Invocation::Tidy => panic!("{line} runs no child"),
+        Invocation::Help(_) | Invocation::Footprint | Invocation::Tidy => panic!("{line} runs no child"),
     };
     let words = call.cargo_arguments();
     words.iter().map(|word: &OsString| word.to_str().unwrap()).collect::<Vec<_>>().join(" ")

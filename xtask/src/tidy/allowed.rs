@@ -85,7 +85,9 @@ pub(super) const ALLOWED: &[Allowed] = &[
         dev: &["tempfile"],
         ..NOTHING
     },
-    Allowed { name: "xtask", normal: &["anyhow", "serde_json"], ..NOTHING },
+    Allowed { name: "jbtg-c", normal: &["jbtg", "safezone"], dev: &["cbindgen"], ..NOTHING },
+    Allowed { name: "jbtg-bare", normal: &["jbtg", "safezone"], ..NOTHING },
+    Allowed { name: "xtask", normal: &["anyhow", "object", "serde_json"], ..NOTHING },
 ];
 
 #[cfg(test)]
@@ -126,6 +128,8 @@ mod tests {
             ("sac-burn", vec![]),
             ("figures", vec![]),
             ("runner", vec!["adaptive-ctrl", "figures", "hiab-dynamics", "jbtg", "safezone", "sac-burn"]),
+            ("jbtg-c", vec!["jbtg", "safezone"]),
+            ("jbtg-bare", vec!["jbtg", "safezone"]),
             ("xtask", vec![]),
         ] {
             let allowed = ALLOWED.iter().find(|allowed| allowed.name == name).unwrap();

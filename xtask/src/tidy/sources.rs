@@ -8,6 +8,11 @@ use std::path::{Path, PathBuf};
 /// Longest source file; beyond it, one file holds more than one idea.
 const MOST_LINES: usize = 500;
 
+/// Crates that export a name to a linker, which is an unsafe attribute. Their roots say `deny` instead of `forbid`, and the
+/// one exception `expect`s it with its reason; their manifests repeat the workspace's lints, since only `forbid` cannot
+/// be relaxed.
+const EXPORTING: &[&str] = &["jbtg-c", "jbtg-bare"];
+
 /// Checks every manifest and source file of the workspace; adds to `problems`.
 ///
 /// Returns the number of source files.
@@ -18,14 +23,34 @@ pub(super) fn check(workspace: &Workspace, problems: &mut Vec<Problem>) -> anyho
     let mut count = 0;
     for package in &workspace.packages {
         let manifest = read(&package.manifest)?;
-        problems.extend(manifest_problem(&place(workspace, &package.manifest), &manifest));
+        let exports = EXPORTING.contains(&package.name.as_str());
+        if !exports {
+            problems.extend(manifest_problem(&place(workspace, &package.manifest), &manifest));
+        }
+        let lint = if exports { Lint::Deny } else { Lint::Forbid };
         for file in rust_files(package)? {
             let role = Role::of(&file, package);
-            problems.extend(file_problems(&place(workspace, &file), &read(&file)?, role));
+            problems.extend(file_problems(&place(workspace, &file), &read(&file)?, (role, lint)));
             count += 1;
         }
     }
     Ok(count)
+}
+
+/// What the root of a crate says about unsafe code.
+#[derive(Clone, Copy, Debug, PartialEq)]
+enum Lint {
+    Forbid,
+    Deny,
+}
+
+impl Lint {
+    const fn line(self) -> &'static str {
+        match self {
+            Self::Forbid => "#![forbid(unsafe_code)]",
+            Self::Deny => "#![deny(unsafe_code)]",
+        }
+    }
 }
 
 /// What a source file is, as far as the rules tell files apart.
@@ -58,14 +83,14 @@ fn manifest_problem(place: &str, manifest: &str) -> Option<Problem> {
     (!takes).then(|| Problem::new(place, "add `[lints]` with `workspace = true`"))
 }
 
-fn file_problems(place: &str, text: &str, role: Role) -> Vec<Problem> {
+fn file_problems(place: &str, text: &str, (role, lint): (Role, Lint)) -> Vec<Problem> {
     let mut problems = Vec::new();
     let documented = text.starts_with("//! ") || text.starts_with("#![doc = include_str!(");
     if role != Role::Tests && !documented {
         problems.push(Problem::new(place, "begin with a `//! ` line that says what the file is for"));
     }
-    if role == Role::Root && !text.lines().any(|line| line.trim_end() == "#![forbid(unsafe_code)]") {
-        problems.push(Problem::new(place, "is the root of a crate; add `#![forbid(unsafe_code)]`"));
+    if role == Role::Root && !text.lines().any(|line| line.trim_end() == lint.line()) {
+        problems.push(Problem::new(place, format!("is the root of a crate; add `{}`", lint.line())));
     }
     let lines = text.lines().count();
     if lines > MOST_LINES {
@@ -117,7 +142,7 @@ mod tests {
 
     /// The lines of what is found in one file.
     fn found(text: &str, role: Role) -> Vec<String> {
-        file_problems("a.rs", text, role).iter().map(Problem::to_string).collect()
+        file_problems("a.rs", text, (role, Lint::Forbid)).iter().map(Problem::to_string).collect()
     }
 
     #[track_caller]
@@ -154,6 +179,13 @@ mod tests {
         ] {
             check_one(text, Role::Root, "add `#![forbid(unsafe_code)]`");
         }
+    }
+
+    #[test]
+    fn a_root_that_exports_names_denies_unsafe_code_at_least() {
+        let problems = |text| file_problems("a.rs", text, (Role::Root, Lint::Deny)).len();
+        assert_eq!(problems("//! A.\n#![deny(unsafe_code)]\n"), 0);
+        assert_eq!(problems("//! A.\n#![warn(unsafe_code)]\n"), 1);
     }
 
     #[test]
