@@ -1,5 +1,6 @@
 //! Integration tests: every file in this folder is a module of this one program.
 
+mod api;
 mod bernstein;
 mod issues;
 mod no_allocation;

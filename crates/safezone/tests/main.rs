@@ -1,6 +1,7 @@
 //! Integration tests: every file in this folder is a module of this one program.
 
 mod adversary;
+mod api;
 mod lowering;
 mod no_allocation;
 mod oracle;
