@@ -2,7 +2,7 @@
 //! the new limits. And starts from outside. The way back is defined and monotone.
 
 use jbtg::strategies::planners;
-use jbtg::{Direction, Interval, Limits, LimitsSpec, Planner, PlannerSpec, Shape, Timing};
+use jbtg::{Direction, Interval, Limits, LimitsSpec, Planner, PlannerSpec, Shape};
 use proptest::prelude::*;
 use safezone::{RangeStatus, SafeZone, Side};
 
