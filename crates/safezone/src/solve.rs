@@ -77,14 +77,14 @@ impl Approach<'_> {
             return rest * line.per_gain;
         }
         let n = self.braking.steps_within(line, rest);
-        let (velocity, sum, slope) = match self.table {
-            Some(curve) => {
-                let (velocity, distance, slope) = curve.segment(n as u32 as usize);
-                (velocity, line.gain * velocity + distance, line.gain + slope)
-            }
-            None => self.braking.knot(line, n),
+        let Some(curve) = self.table else {
+            let (velocity, sum, slope) = self.braking.knot(line, n);
+            return velocity + (rest - sum) / slope;
         };
-        velocity + (rest - sum) / slope
+        let (velocity, distance, slope) = curve.segment(n as u32 as usize);
+        let sum = line.gain * velocity + distance;
+        // From beyond the other limit there is more room than the table knows distances for.
+        (velocity + (rest - sum) / (line.gain + slope)).min(curve.last_velocity())
     }
 
     /// The velocity at which the travel is `room`, by Newton steps within a bracket, from the safe side.

@@ -1,10 +1,10 @@
 //! States that no step of ours leads to: outside the limits, too fast, not finite.
 
 use jbtg::strategies::planners;
-use jbtg::{Direction, Planner};
+use jbtg::{Direction, Interval, Limits, Planner, PlannerSpec, Shape, SymmetricLimits, Timing};
 use proptest::num::f64::ANY;
 use proptest::prelude::*;
-use safezone::{FailSafeReason, RangeStatus, Request, SafeZone, Source};
+use safezone::{BrakingTable, FailSafeReason, RangeStatus, Request, SafeZone, Source};
 
 use crate::adversary::safe_state;
 use crate::tolerance::LIMIT;
@@ -17,6 +17,38 @@ fn least_change(planner: &Planner) -> f64 {
 
 fn actions() -> impl Strategy<Value = f64> {
     prop_oneof![Just(-1.0), Just(1.0), -1.0..=1.0]
+}
+
+/// From far beyond one limit there is more room to the other than a table, which ends with the interval's width, tells
+/// distances for.
+#[test]
+fn the_way_back_from_afar_stops_at_the_other_limit() {
+    let position = Interval::new(0.0, 0.01);
+    let symmetric = SymmetricLimits { position, velocity: 0.5, acceleration: 1.0, jerk: 100.0 };
+    let limits = Limits::try_from(symmetric).unwrap();
+    for timing in [Timing::Stretched, Timing::Fastest] {
+        let shape = Shape::Smoothstep;
+        let planner = Planner::try_from(PlannerSpec { limits, shape, timing, period: 0.05 }).unwrap();
+        let table = BrakingTable::build(&planner).unwrap();
+        for zone in [SafeZone::new(planner, table).unwrap(), SafeZone::closed_form(planner).unwrap()] {
+            for (start, action) in [(0.31, -1.0), (-0.3, 1.0)] {
+                let (mut position, mut velocity) = (start, 0.0);
+                for step in 0..200 {
+                    let next = zone.command(position, velocity, action).velocity;
+                    let ramp = planner.ramp(position, velocity, next).unwrap();
+                    let found = ramp.extrema().position;
+                    let beyond = if action < 0.0 { -found.min } else { found.max - 0.01 };
+                    assert!(beyond <= LIMIT * 0.01, "step {step} from {start} ({timing:?}): {beyond:e}");
+                    (position, velocity) = (ramp.end().position, ramp.end().velocity);
+                }
+                let limit = if action < 0.0 { 0.0 } else { 0.01 };
+                assert!(
+                    velocity.abs() < 1e-9 && (position - limit).abs() < 1e-4,
+                    "{position:e}, {velocity:e}"
+                );
+            }
+        }
+    }
 }
 
 proptest! {

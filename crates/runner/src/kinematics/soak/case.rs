@@ -91,6 +91,7 @@ impl Joint {
         };
         match judged() {
             Ok((end, trust)) => {
+                witness.step(self.state, &command, next);
                 self.state = (end.position, end.velocity);
                 self.trust = trust;
                 Ok(())

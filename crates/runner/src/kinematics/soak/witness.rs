@@ -1,8 +1,9 @@
 //! Who watches a case: nobody in a run, a writer when one case is replayed.
 
+use std::collections::VecDeque;
 use std::fmt::Write as _;
 
-use safezone::{Command, SafeZone};
+use safezone::{Command, RangeStatus, SafeZone};
 
 use super::judge::Fault;
 
@@ -23,6 +24,8 @@ pub(super) struct Moment {
 pub(super) trait Witness {
     /// A joint's limits take effect.
     fn zone(&mut self, zone: &SafeZone<'_>);
+    /// A step is made in which every promise held.
+    fn step(&mut self, state: (f64, f64), command: &Command, next: f64);
     /// A promise is broken.
     fn fault(&mut self, zone: &SafeZone<'_>, moment: &Moment);
 }
@@ -33,21 +36,31 @@ pub(super) struct Nobody;
 impl Witness for Nobody {
     fn zone(&mut self, _: &SafeZone<'_>) {}
 
+    #[inline]
+    fn step(&mut self, _: (f64, f64), _: &Command, _: f64) {}
+
     fn fault(&mut self, _: &SafeZone<'_>, _: &Moment) {}
 }
 
-/// Writes down every joint and every fault, with all digits.
+/// Steps before a fault that are written down with it.
+const REMEMBERED: usize = 12;
+
+/// Writes down every joint and every fault with the steps before it, with all digits.
 #[derive(Debug, Default)]
-pub(super) struct Words(String);
+pub(super) struct Words {
+    text: String,
+    /// The last steps: position, velocity, the velocity taken, and the status of the range.
+    steps: VecDeque<(f64, f64, f64, RangeStatus)>,
+}
 
 impl Words {
     pub(super) fn into_text(self) -> String {
-        self.0
+        self.text
     }
 
     fn line(&mut self, line: std::fmt::Arguments<'_>) {
         // Writing to a string cannot fail.
-        let _ = writeln!(self.0, "{line}");
+        let _ = writeln!(self.text, "{line}");
     }
 }
 
@@ -57,8 +70,18 @@ impl Witness for Words {
         self.line(format_args!("joint ({source}): {:?}", zone.planner().spec()));
     }
 
+    fn step(&mut self, (position, velocity): (f64, f64), command: &Command, next: f64) {
+        if self.steps.len() == REMEMBERED {
+            self.steps.pop_front();
+        }
+        self.steps.push_back((position, velocity, next, command.range.status));
+    }
+
     fn fault(&mut self, zone: &SafeZone<'_>, moment: &Moment) {
         let Moment { number, state: (position, velocity), command, next, fault } = *moment;
+        for (position, velocity, next, status) in std::mem::take(&mut self.steps) {
+            self.line(format_args!("  before: ({position:?}, {velocity:?}) to {next:?}, {status:?}"));
+        }
         self.line(format_args!("step {number}: {fault:?}"));
         self.line(format_args!("  from ({position:?}, {velocity:?}) to velocity {next:?}: {command:?}"));
         let stop = position + velocity.signum() * zone.stopping_distance(velocity);
