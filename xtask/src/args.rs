@@ -66,7 +66,7 @@ impl Values {
             let Some(flag) = self.command.flags.iter().find(|flag| flag.name == name) else {
                 return Err(self.error(&self.unknown_flag(name)));
             };
-            if self.given.iter().any(|(given, _)| *given == flag.name) {
+            if !flag.repeated && self.given.iter().any(|(given, _)| *given == flag.name) {
                 return Err(self.error(&format!("flag `--{name}` is given twice")));
             }
             let value = match (flag.value, inline) {
@@ -166,10 +166,19 @@ impl Values {
 
     /// Name of a run: one folder name, so nothing outside `runs/` can be meant.
     pub(crate) fn run_name(&self, flag: &str) -> Result<Option<String>, UsageError> {
-        let Some(text) = self.text(flag) else { return Ok(None) };
+        self.text(flag).map(|text| self.checked_run_name(flag, text)).transpose()
+    }
+
+    /// Names of runs, in the order in which they were given.
+    pub(crate) fn run_names(&self, flag: &str) -> Result<Vec<String>, UsageError> {
+        let given = self.given.iter().filter(|(name, _)| *name == flag);
+        given.filter_map(|(_, text)| text.as_deref()).map(|text| self.checked_run_name(flag, text)).collect()
+    }
+
+    fn checked_run_name(&self, flag: &str, text: &str) -> Result<String, UsageError> {
         let plain = |c: char| c.is_ascii_alphanumeric() || matches!(c, '-' | '_' | '.');
         if !text.is_empty() && text.chars().all(plain) && !text.starts_with(['.', '-']) {
-            return Ok(Some(text.to_owned()));
+            return Ok(text.to_owned());
         }
         let wanted = "letters, digits, `-`, `_` and `.`, beginning with a letter, a digit or `_`";
         Err(self.error(&format!("--{flag} must be a folder name ({wanted}), got `{text}`")))

@@ -3,7 +3,7 @@
 //! [`COMMANDS`] is what may be written, and what `help` prints; the types below are what the commands
 //! get, checked.
 
-use crate::args::{Parsed, UsageError};
+use crate::args::{Parsed, UsageError, Values};
 use std::path::PathBuf;
 
 /// One command: `cargo xtask NAME [flags]`.
@@ -22,19 +22,25 @@ pub(crate) struct Flag {
     /// What the value is called in the help; none for a switch.
     pub(crate) value: Option<&'static str>,
     pub(crate) required: bool,
+    /// True if it may be given several times.
+    pub(crate) repeated: bool,
     pub(crate) help: &'static str,
 }
 
 const fn required(name: &'static str, value: &'static str, help: &'static str) -> Flag {
-    Flag { name, value: Some(value), required: true, help }
+    Flag { name, value: Some(value), required: true, repeated: false, help }
 }
 
 const fn optional(name: &'static str, value: &'static str, help: &'static str) -> Flag {
-    Flag { name, value: Some(value), required: false, help }
+    Flag { name, value: Some(value), required: false, repeated: false, help }
+}
+
+const fn repeated(name: &'static str, value: &'static str, help: &'static str) -> Flag {
+    Flag { name, value: Some(value), required: false, repeated: true, help }
 }
 
 const fn switch(name: &'static str, help: &'static str) -> Flag {
-    Flag { name, value: None, required: false, help }
+    Flag { name, value: None, required: false, repeated: false, help }
 }
 
 /// Every command, in the order in which a newcomer needs them.
@@ -75,6 +81,31 @@ pub(crate) const COMMANDS: &[Command] = &[
             optional("json", "FILE", "write the result there as JSON as well"),
         ],
         example: "cargo xtask eval --run first --stage purple --episodes 200",
+    },
+    Command {
+        name: "figures",
+        summary: "Draw a run: workspace, postures, safe zone, motion, tracking, margins, learning",
+        flags: &[
+            repeated("run", "NAME", "run under runs/; more of them add to the learning curves"),
+            optional("policy", "FILE", "checkpoint whose policy is shown, instead of the first run's best"),
+            optional("stage", "STAGE", "stage whose policy is shown, instead of the last one trained"),
+            optional("episodes", "N", "episodes to play (default 60)"),
+            optional("out", "DIR", "folder for the pictures, instead of runs/NAME/figures"),
+        ],
+        example: "cargo xtask figures --run first --out docs/figures",
+    },
+    Command {
+        name: "report",
+        summary: "Write a run as one page: results, certificate, figures, configuration, commands",
+        flags: &[
+            repeated("run", "NAME", "run under runs/; more of them are compared"),
+            optional("policy", "FILE", "checkpoint whose policy is shown, instead of the first run's best"),
+            optional("stage", "STAGE", "stage whose policy is shown, instead of the last one trained"),
+            optional("episodes", "N", "episodes to play for the figures (default 60)"),
+            optional("out", "FILE", "the page, instead of runs/NAME/report.html"),
+            switch("open", "show it in the browser"),
+        ],
+        example: "cargo xtask report --run first --open",
     },
     Command {
         name: "profile",
@@ -182,6 +213,8 @@ pub(crate) enum Invocation {
     Tables(Tables),
     Train(Train),
     Eval(Eval),
+    Figures(Figures),
+    Report(Report),
     Profile(Profile),
     Zone(Zone),
     Soak(Soak),
@@ -223,6 +256,21 @@ pub(crate) struct Eval {
     pub(crate) episodes: Option<u64>,
     pub(crate) seed: Option<u64>,
     pub(crate) json: Option<PathBuf>,
+}
+
+#[derive(Debug, PartialEq)]
+pub(crate) struct Figures {
+    pub(crate) runs: Vec<String>,
+    pub(crate) policy: Option<PathBuf>,
+    pub(crate) stage: Option<&'static str>,
+    pub(crate) episodes: Option<u64>,
+    pub(crate) out: Option<PathBuf>,
+}
+
+#[derive(Debug, PartialEq)]
+pub(crate) struct Report {
+    pub(crate) figures: Figures,
+    pub(crate) open: bool,
 }
 
 #[derive(Debug, PartialEq)]
@@ -306,6 +354,20 @@ impl Invocation {
                 seed: parsed.integer("seed", 0)?,
                 json: parsed.file("json")?,
             }),
+            "figures" => {
+                let figures = figures(&parsed)?;
+                if figures.runs.is_empty() && figures.policy.is_none() {
+                    return Err(parsed.error("needs --run NAME or --policy FILE"));
+                }
+                Self::Figures(figures)
+            }
+            "report" => {
+                let report = Report { figures: figures(&parsed)?, open: parsed.switch("open") };
+                if report.figures.runs.is_empty() {
+                    return Err(parsed.error("needs --run NAME"));
+                }
+                Self::Report(report)
+            }
             "profile" => Self::Profile(Profile {
                 v1: parsed.number("v1")?,
                 v2: parsed.number("v2")?,
@@ -345,6 +407,17 @@ impl Invocation {
             _ => Self::Help(None),
         })
     }
+}
+
+/// What `figures` and `report` have in common.
+fn figures(parsed: &Values) -> Result<Figures, UsageError> {
+    Ok(Figures {
+        runs: parsed.run_names("run")?,
+        policy: parsed.existing_file("policy")?,
+        stage: parsed.one_of("stage", STAGES)?,
+        episodes: parsed.integer("episodes", 1)?,
+        out: parsed.file("out")?,
+    })
 }
 
 #[cfg(test)]

@@ -25,6 +25,7 @@ fn one(command: &Command) -> String {
     for flag in command.flags {
         let form = form(flag);
         text += &if flag.required { format!(" {form}") } else { format!(" [{form}]") };
+        text += if flag.repeated { "…" } else { "" };
     }
     text += "\n";
     if !command.flags.is_empty() {

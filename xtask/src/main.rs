@@ -8,6 +8,7 @@
 mod args;
 mod dynamics;
 mod eval;
+mod figures;
 mod flags;
 mod footprint;
 mod help;
@@ -52,6 +53,8 @@ fn dispatch(invocation: Invocation) -> anyhow::Result<ExitCode> {
         Invocation::Tables(flags) => flags.run(),
         Invocation::Train(flags) => flags.run(),
         Invocation::Eval(flags) => flags.run(),
+        Invocation::Figures(flags) => flags.run(),
+        Invocation::Report(flags) => flags.run(),
         Invocation::Profile(flags) => flags.run(),
         Invocation::Zone(flags) => flags.run(),
         Invocation::Soak(flags) => flags.run(),

@@ -280,7 +280,12 @@ pub(crate) fn y_axis(drawing: &mut Drawing, frame: &Frame, ticks: &Ticks, captio
     }
     drawing.line(vec![[left, top], [left, bottom]], Stroke::solid(Colour::Muted, 1.2), None);
     let at = [EDGE + LABEL - 2.0, (top + bottom) / 2.0];
-    drawing.text_upwards(at, caption, fitted(caption, LABEL, frame.rect.height() + 24.0), Colour::Ink);
+    drawing.text_upwards(
+        at,
+        caption,
+        fitted(caption, LABEL, frame.rect.height() + BETWEEN - 4.0),
+        Colour::Ink,
+    );
 }
 
 pub(crate) fn x_axis(drawing: &mut Drawing, frame: &Frame, ticks: &Ticks, caption: &str) {

@@ -18,6 +18,9 @@ const LEADING: f64 = 17.0;
 const INSIDE: f64 = 14.0;
 const BETWEEN_ROWS: f64 = 64.0;
 
+/// From an upright arrow to its label \[px\].
+const BESIDE_ARROW: f64 = 9.0;
+
 /// A box.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Node {
@@ -73,8 +76,19 @@ impl Diagram {
             return Err(FigureError::Length { figure: figure(), what: "a diagram", expected, found });
         }
         let rects = self.place();
-        let right = rects.iter().map(|rect| rect.right).fold(0.0, f64::max);
-        let bottom = rects.iter().map(|rect| rect.bottom).fold(0.0, f64::max);
+        // The label of an upright arrow may reach beyond the last column.
+        let labels =
+            self.arrows.iter().filter(|arrow| self.nodes[arrow.from].row != self.nodes[arrow.to].row);
+        let ends = labels.map(|arrow| {
+            let from = &rects[arrow.from];
+            (from.left + from.right) / 2.0 + arrow.shift + BESIDE_ARROW + widest_line(&arrow.lines)
+        });
+        let right = rects.iter().map(|rect| rect.right).chain(ends).fold(0.0, f64::max);
+        let lower = self.arrows.iter().filter(|arrow| arrow.shift > 0.0).map(|arrow| {
+            let from = &rects[arrow.from];
+            (from.top + from.bottom) / 2.0 + arrow.shift + arrow.lines.len() as f64 * LEADING + 4.0
+        });
+        let bottom = rects.iter().map(|rect| rect.bottom).chain(lower).fold(0.0, f64::max);
         let mut drawing = Drawing::new(&self.title, right + EDGE, bottom + EDGE);
         let size = fitted(&self.title, TITLE, right - EDGE);
         drawing.text([EDGE, EDGE + TITLE - 2.0], &self.title, size, Anchor::Start, Colour::Ink);
@@ -179,7 +193,7 @@ fn draw_arrow(drawing: &mut Drawing, arrow: &Arrow, from: &Rect, to: &Rect) {
             drawing.text([middle(start[0], end[0]), y], line, LABEL, Anchor::Middle, Colour::Ink);
         } else {
             let y = middle(start[1], end[1]) + 4.0 + (at - (count - 1.0) / 2.0) * LEADING;
-            drawing.text([start[0] + 9.0, y], line, LABEL, Anchor::Start, Colour::Ink);
+            drawing.text([start[0] + BESIDE_ARROW, y], line, LABEL, Anchor::Start, Colour::Ink);
         }
     }
 }

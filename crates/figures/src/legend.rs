@@ -93,7 +93,7 @@ fn sample(drawing: &mut Drawing, layer: &Layer, left: f64, middle: f64) {
                 drawing.line(vec![[left, middle], [right, middle]], stroke, None);
             }
             if let Some(marker) = style.marker {
-                plot::marker(drawing, [left + SAMPLE / 2.0, middle], marker, style.colour, None);
+                plot::marker(drawing, [left + SAMPLE / 2.0, middle], marker, style.colour, 1.0, None);
             }
         }
         Layer::Band(band) => {

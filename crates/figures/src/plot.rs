@@ -108,9 +108,12 @@ fn series(drawing: &mut Drawing, frame: &Frame, series: &Series, order: usize) {
             Course::Points => 1,
             _ => places.len().div_ceil(MOST_MARKERS).max(1),
         };
+        // Points that are close together must not hide each other.
+        let size = (frame.rect.width() / places.len() as f64 / 12.0).clamp(0.5, 1.0);
+        let size = if series.course == Course::Points { size } else { 1.0 };
         // Series of equal length would hide each other's markers.
         for &place in places.iter().skip(order * every / 4 % every).step_by(every) {
-            self::marker(drawing, place, marker, colour, clip);
+            self::marker(drawing, place, marker, colour, size, clip);
         }
     }
 }
@@ -150,40 +153,39 @@ fn thinned(run: &[Point]) -> Vec<Point> {
     kept
 }
 
+/// A sign of `size` 1 at most at a point.
 pub(crate) fn marker(
     drawing: &mut Drawing,
     [x, y]: Point,
     marker: Marker,
     colour: Colour,
+    size: f64,
     clip: Option<Rect>,
 ) {
     let rim = Some(Stroke::solid(Colour::Paper, 0.8));
     let fill = Some(solid(colour));
+    let at = |offsets: &[Point]| offsets.iter().map(|[dx, dy]| [x + size * dx, y + size * dy]).collect();
+    let centre = [x, y];
+    let (radius, half) = (3.4 * size, 3.2);
     match marker {
-        Marker::Disc => {
-            drawing.items.push(Item::Disc { centre: [x, y], radius: 3.4, fill, stroke: rim, clip })
-        }
+        Marker::Disc => drawing.items.push(Item::Disc { centre, radius, fill, stroke: rim, clip }),
         Marker::Ring => {
-            let stroke = Some(Stroke::solid(colour, 1.6));
+            let stroke = Some(Stroke::solid(colour, 1.6 * size));
             let fill = Some(solid(Colour::Paper));
-            drawing.items.push(Item::Disc { centre: [x, y], radius: 3.4, fill, stroke, clip });
+            drawing.items.push(Item::Disc { centre, radius, fill, stroke, clip });
         }
         Marker::Square => {
-            let rect = Rect { left: x - 3.2, top: y - 3.2, right: x + 3.2, bottom: y + 3.2 };
-            drawing.polygon(rect.corners(), fill, rim, clip);
+            let corners = [[-half, -half], [half, -half], [half, half], [-half, half]];
+            drawing.polygon(at(&corners), fill, rim, clip);
         }
-        Marker::Triangle => {
-            drawing.polygon(vec![[x, y - 4.4], [x + 4.2, y + 3.2], [x - 4.2, y + 3.2]], fill, rim, clip);
-        }
+        Marker::Triangle => drawing.polygon(at(&[[0.0, -4.4], [4.2, 3.2], [-4.2, 3.2]]), fill, rim, clip),
         Marker::Diamond => {
-            drawing.polygon(vec![[x, y - 4.6], [x + 4.6, y], [x, y + 4.6], [x - 4.6, y]], fill, rim, clip);
+            drawing.polygon(at(&[[0.0, -4.6], [4.6, 0.0], [0.0, 4.6], [-4.6, 0.0]]), fill, rim, clip);
         }
         Marker::Cross => {
-            let pieces = vec![
-                vec![[x - 3.6, y - 3.6], [x + 3.6, y + 3.6]],
-                vec![[x - 3.6, y + 3.6], [x + 3.6, y - 3.6]],
-            ];
+            let arms = [at(&[[-3.6, -3.6], [3.6, 3.6]]), at(&[[-3.6, 3.6], [3.6, -3.6]])];
             let stroke = Some(Stroke::solid(colour, 2.0));
+            let pieces = arms.into();
             drawing.items.push(Item::Path { pieces, closed: false, fill: None, stroke, clip });
         }
     }

@@ -8,14 +8,14 @@ use anyhow::{Result, anyhow, bail, ensure};
 /// The flags that were given; each is taken out once, and what is left over is an error.
 #[derive(Debug)]
 pub struct Arguments {
-    values: BTreeMap<String, Option<String>>,
+    values: BTreeMap<String, Vec<Option<String>>>,
 }
 
 impl Arguments {
     /// Splits `--flag value`, `--flag=value` and `--switch`, where `switches` names those without a value.
     ///
     /// # Errors
-    /// A word that is no flag, a flag given twice or without its value.
+    /// A word that is no flag, or a flag without its value.
     pub fn parse(words: impl IntoIterator<Item = String>, switches: &[&str]) -> Result<Self> {
         let mut values = BTreeMap::new();
         let mut words = words.into_iter();
@@ -29,7 +29,7 @@ impl Arguments {
                 let value = words.next().ok_or_else(|| anyhow!("--{flag} needs a value"))?;
                 (flag, Some(value))
             };
-            ensure!(values.insert(name.to_owned(), value).is_none(), "--{name} is given twice");
+            values.entry(name.to_owned()).or_insert_with(Vec::new).push(value);
         }
         Ok(Self { values })
     }
@@ -37,17 +37,31 @@ impl Arguments {
     /// Value of a flag, if it was given.
     ///
     /// # Errors
-    /// The value does not parse.
+    /// The flag is given twice, or its value does not parse.
     pub fn optional<T: FromStr<Err: std::fmt::Display>>(&mut self, name: &str) -> Result<Option<T>> {
-        let Some(value) = self.values.remove(name) else { return Ok(None) };
-        let value = value.ok_or_else(|| anyhow!("--{name} needs a value"))?;
-        value.parse().map(Some).map_err(|error| anyhow!("--{name} {value}: {error}"))
+        let mut values = self.all(name)?;
+        ensure!(values.len() < 2, "--{name} is given twice");
+        Ok(values.pop())
+    }
+
+    /// Values of a flag that may be given several times, in that order.
+    ///
+    /// # Errors
+    /// A value does not parse.
+    pub fn all<T: FromStr<Err: std::fmt::Display>>(&mut self, name: &str) -> Result<Vec<T>> {
+        let given = self.values.remove(name).unwrap_or_default().into_iter();
+        given
+            .map(|value| {
+                let value = value.ok_or_else(|| anyhow!("--{name} needs a value"))?;
+                value.parse().map_err(|error| anyhow!("--{name} {value}: {error}"))
+            })
+            .collect()
     }
 
     /// Value of a flag that must be given.
     ///
     /// # Errors
-    /// The flag is missing or its value does not parse.
+    /// The flag is missing, or [`Arguments::optional`] refuses it.
     pub fn required<T: FromStr<Err: std::fmt::Display>>(&mut self, name: &str) -> Result<T> {
         self.optional(name)?.ok_or_else(|| anyhow!("--{name} is missing"))
     }
@@ -55,12 +69,13 @@ impl Arguments {
     /// True if a switch was given.
     ///
     /// # Errors
-    /// The switch was given a value.
+    /// The switch was given a value, or twice.
     pub fn switch(&mut self, name: &str) -> Result<bool> {
-        match self.values.remove(name) {
+        match self.values.remove(name).as_deref() {
             None => Ok(false),
-            Some(None) => Ok(true),
-            Some(Some(value)) => bail!("--{name} takes no value, got '{value}'"),
+            Some([None]) => Ok(true),
+            Some([Some(value)]) => bail!("--{name} takes no value, got '{value}'"),
+            Some(_) => bail!("--{name} is given twice"),
         }
     }
 
@@ -91,6 +106,14 @@ mod tests {
         assert_eq!(arguments.required::<f64>("v2").unwrap(), -1e-3);
         assert!(arguments.switch("check").unwrap());
         arguments.finish().unwrap();
+    }
+
+    #[test]
+    fn a_flag_may_have_several_values_where_they_are_asked_for() {
+        let mut arguments = parse("--run a --v1 1 --run=b").unwrap();
+        assert_eq!(arguments.all::<String>("run").unwrap(), ["a", "b"]);
+        assert_eq!(arguments.all::<String>("config").unwrap(), [""; 0]);
+        assert!(parse("--check --check").unwrap().switch("check").is_err());
     }
 
     #[test]

@@ -122,11 +122,19 @@ impl Environment {
     /// # Errors
     /// The simulated crane left the range in which its loops close.
     pub fn step(&mut self, action: &[f32]) -> Result<Step> {
+        self.step_seen(action, |_| {})
+    }
+
+    /// [`Environment::step`], and `see` is shown the motion after every tick.
+    ///
+    /// # Errors
+    /// As there.
+    pub fn step_seen(&mut self, action: &[f32], see: impl FnMut(&Motion)) -> Result<Step> {
         let mut commands = [Request::Missing; MAX_MOVING];
         for (command, &value) in commands.iter_mut().zip(action) {
             *command = Request::Action(f64::from(value));
         }
-        self.motion.advance(&commands[..action.len()])?;
+        self.motion.advance_seen(&commands[..action.len()], see)?;
         self.steps += 1;
         self.look()?;
         let machine = &self.machine;
@@ -176,6 +184,18 @@ impl Environment {
     #[must_use]
     pub fn distance(&self) -> f64 {
         norm(std::array::from_fn(|axis| self.tip.position[axis] - self.target[axis]))
+    }
+
+    /// Tip position in the world \[m\].
+    #[must_use]
+    pub fn tip(&self) -> [f64; 3] {
+        self.tip.position
+    }
+
+    /// The crane in motion.
+    #[must_use]
+    pub fn motion(&self) -> &Motion {
+        &self.motion
     }
 
     /// Steps of the present episode.

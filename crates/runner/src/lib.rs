@@ -8,6 +8,7 @@
 //! # Features
 //! - `training` (default): learning and evaluating policies, which takes burn. Without it the programs about motion
 //!   alone build in seconds.
+//! - `figures` (default): pictures of runs and of motion.
 #![forbid(unsafe_code)]
 
 pub mod arguments;
@@ -22,6 +23,9 @@ pub mod kinematics;
 pub mod machine;
 pub mod motion;
 pub mod observation;
+#[cfg(feature = "figures")]
+pub mod pictures;
+pub mod recording;
 pub mod region;
 pub mod stage;
 pub mod statistics;
@@ -35,8 +39,12 @@ pub mod checkpoint;
 pub mod curriculum;
 #[cfg(feature = "training")]
 pub mod evaluation;
+#[cfg(all(feature = "figures", feature = "training"))]
+pub mod gallery;
 #[cfg(feature = "training")]
 pub mod progress;
+#[cfg(all(feature = "figures", feature = "training"))]
+pub mod report;
 #[cfg(feature = "training")]
 pub mod tensorboard;
 #[cfg(feature = "training")]

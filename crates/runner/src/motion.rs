@@ -125,6 +125,17 @@ impl Motion {
     /// # Panics
     /// `actions` has another length than there are moving joints.
     pub fn advance(&mut self, actions: &[Request]) -> Result<()> {
+        self.advance_seen(actions, |_| {})
+    }
+
+    /// [`Motion::advance`], and `see` is shown the motion after every tick.
+    ///
+    /// # Errors
+    /// As there.
+    ///
+    /// # Panics
+    /// As there.
+    pub fn advance_seen(&mut self, actions: &[Request], mut see: impl FnMut(&Self)) -> Result<()> {
         let machine = Arc::clone(&self.machine);
         assert_eq!(actions.len(), machine.moving().len(), "one action for each moving joint");
         self.plan(&machine, actions)?;
@@ -144,6 +155,7 @@ impl Motion {
             }
             self.integrate(&machine, tick_period)?;
             self.witness(&machine, f64::from(tick + 1 - sampled_at) * tick_period, tick_period);
+            see(self);
         }
         for (&joint, trajectory) in machine.moving().iter().zip(&self.trajectories) {
             let end = trajectory.end();
@@ -300,6 +312,12 @@ impl Motion {
     #[must_use]
     pub fn velocity(&self) -> &[f64] {
         &self.velocity
+    }
+
+    /// Acceleration of every joint over the last tick [rad/s² or m/s²].
+    #[must_use]
+    pub fn acceleration(&self) -> &[f64] {
+        &self.acceleration
     }
 
     /// Effort of every actuator [N·m or N].

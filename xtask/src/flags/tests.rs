@@ -19,6 +19,8 @@ fn cargo_line(line: &str) -> String {
         Invocation::Tables(flags) => flags.call(),
         Invocation::Train(flags) => flags.call(),
         Invocation::Eval(flags) => flags.call(),
+        Invocation::Figures(flags) => flags.call(),
+        Invocation::Report(flags) => flags.call(),
         Invocation::Profile(flags) => flags.call(),
         Invocation::Zone(flags) => flags.call(),
         Invocation::Soak(flags) => flags.call(),
@@ -47,6 +49,11 @@ fn flags_reach_the_child_in_one_form() {
             "eval --stage=orange --run x --episodes 5 --seed 0",
             format!("{RUNNER} eval --run x --stage orange --episodes 5 --seed 0"),
         ),
+        (
+            "figures --run b --stage purple --run=a --episodes 9",
+            format!("{RUNNER} figures --run b --run a --stage purple --episodes 9"),
+        ),
+        ("report --open --run a", format!("{RUNNER} report --run a --open")),
         (
             "profile --v1=-0.1 --v2 -1e-2 --dt .05 --vmax 0.15 --amax 1 --jmax 1e2 --timing fastest --hz 500",
             format!(
@@ -124,6 +131,8 @@ fn what_is_missing_is_named() {
     assert!(refusal("train --stage purple --all").contains("not both"));
     assert!(refusal("eval --stage purple").contains("needs --run NAME"));
     assert!(refusal("soak --json x").contains("needs --steps N, --seed S"));
+    assert!(refusal("figures --out x").contains("needs --run NAME or --policy FILE"));
+    assert!(refusal("report --open").contains("needs --run NAME"));
     assert!(refusal("train --stage --run x").contains("`--stage` needs a value: --stage STAGE"));
     assert!(refusal("train --all --run").contains("needs a value"));
 }
@@ -141,6 +150,8 @@ fn bad_values_are_refused() {
         ("train --all --run .hidden", "--run must be a folder name"),
         ("train --all --run=", "--run must be a folder name"),
         ("train --all --all", "given twice"),
+        ("figures --run a --run ../b", "--run must be a folder name"),
+        ("figures --run a --stage purple --stage orange", "given twice"),
         ("tables --check=yes", "takes no value"),
         ("tables now", "unexpected argument `now`"),
         ("tidy -x", "unexpected argument `-x`"),

@@ -81,7 +81,7 @@ pub(super) const ALLOWED: &[Allowed] = &[
             "tracing",
             "tracing-subscriber",
         ],
-        optional: &["figures", "sac-burn", "crc32c", "indicatif", "mimalloc"],
+        optional: &["figures", "sac-burn", "crc32c", "indicatif", "mimalloc", "urdf-rs"],
         dev: &["tempfile"],
         ..NOTHING
     },

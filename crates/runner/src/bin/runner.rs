@@ -1,4 +1,4 @@
-//! Commands that learn or use a policy: `train` and `eval`.
+//! Commands that learn or use a policy: `train`, `eval`, `figures` and `report`.
 #![forbid(unsafe_code)]
 
 use std::path::{Path, PathBuf};
@@ -15,6 +15,8 @@ use runner::progress::Display;
 use runner::stage::Stage;
 use runner::training::{self, Request, Training};
 use runner::{checkpoint, command, store};
+#[cfg(feature = "figures")]
+use runner::{gallery, report};
 
 #[global_allocator]
 static ALLOCATOR: mimalloc::MiMalloc = mimalloc::MiMalloc;
@@ -25,6 +27,10 @@ const DEFAULT_RUN: &str = "default";
 /// Episodes of an evaluation if no number is given.
 const DEFAULT_EPISODES: u64 = 200;
 
+/// Episodes behind the figures if no number is given.
+#[cfg(feature = "figures")]
+const DRAWN_EPISODES: u64 = 60;
+
 fn main() -> ExitCode {
     command::run(dispatch)
 }
@@ -33,7 +39,9 @@ fn dispatch(command: &str, words: Vec<String>) -> Result<String> {
     match command {
         "train" => train(Arguments::parse(words, &["all", "resume", "quiet", "plain"])?),
         "eval" => eval(Arguments::parse(words, &[])?),
-        _ => bail!("no command is called '{command}'; there are train and eval"),
+        "figures" => figures(Arguments::parse(words, &[])?),
+        "report" => report(Arguments::parse(words, &["open"])?),
+        _ => bail!("no command is called '{command}'; there are train, eval, figures and report"),
     }
 }
 
@@ -101,6 +109,78 @@ fn eval(mut arguments: Arguments) -> Result<String> {
         store::write_whole(&path, result.as_bytes())?;
     }
     Ok(result)
+}
+
+#[cfg(feature = "figures")]
+fn figures(mut arguments: Arguments) -> Result<String> {
+    let source = source(&mut arguments)?;
+    let out = place(&mut arguments, &source, "figures")?;
+    arguments.finish()?;
+    let drawn = gallery::draw(&source)?;
+    gallery::write(&drawn, &out)?;
+    let mut report =
+        format!("{} figures in {}, each as .svg, .png and -dark.png:\n", drawn.len(), out.display());
+    for (name, figure) in &drawn {
+        report += &format!("  {name:17} {}\n", figure.title());
+    }
+    Ok(report)
+}
+
+#[cfg(feature = "figures")]
+fn report(mut arguments: Arguments) -> Result<String> {
+    let open = arguments.switch("open")?;
+    let source = source(&mut arguments)?;
+    let path = place(&mut arguments, &source, "report.html")?;
+    arguments.finish()?;
+    ensure!(!source.runs.is_empty(), "--run is missing");
+    let html = report::html(&source)?;
+    store::write_whole(&path, html.as_bytes())?;
+    let opened = if open { self::open(&path) } else { String::new() };
+    Ok(format!(
+        "{} ({:.1} MB, nothing else needed to read it)\n{opened}",
+        path.display(),
+        html.len() as f64 / 1e6
+    ))
+}
+
+/// Where `--out` says, or under the first run's folder.
+#[cfg(feature = "figures")]
+fn place(arguments: &mut Arguments, source: &gallery::Source, name: &str) -> Result<PathBuf> {
+    let under_run = || match source.runs.first() {
+        Some(run) => Path::new("runs").join(run).join(name),
+        None => PathBuf::from(name),
+    };
+    Ok(arguments.optional("out")?.unwrap_or_else(under_run))
+}
+
+/// Shows a file in whatever shows such files here; gives what is to be said if nothing does.
+#[cfg(feature = "figures")]
+fn open(path: &Path) -> String {
+    let program = if cfg!(target_os = "macos") { "open" } else { "xdg-open" };
+    match std::process::Command::new(program).arg(path).spawn() {
+        Ok(_) => String::new(),
+        Err(error) => format!("cannot open it: {program}: {error}\n"),
+    }
+}
+
+#[cfg(not(feature = "figures"))]
+fn figures(_arguments: Arguments) -> Result<String> {
+    bail!("this program was built without pictures; build it with the feature `figures`")
+}
+
+#[cfg(not(feature = "figures"))]
+fn report(arguments: Arguments) -> Result<String> {
+    figures(arguments)
+}
+
+/// What is to be drawn.
+#[cfg(feature = "figures")]
+fn source(arguments: &mut Arguments) -> Result<gallery::Source> {
+    let runs: Vec<String> = arguments.all("run")?;
+    let runs = runs.into_iter().map(|run| run_name(Some(run))).collect::<Result<Vec<_>>>()?;
+    let policy: Option<PathBuf> = arguments.optional("policy")?;
+    let (stage, episodes) = (arguments.optional("stage")?, arguments.optional("episodes")?);
+    Ok(gallery::Source { runs, stage, policy, episodes: episodes.unwrap_or(DRAWN_EPISODES) })
 }
 
 /// A name that is one folder under `runs/`.

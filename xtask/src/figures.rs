@@ -1,0 +1,34 @@
+//! `figures` and `report`: a run to be looked at.
+
+use crate::flags::{Figures, Report};
+use crate::runner::{Binary, Call};
+use std::process::ExitCode;
+
+impl Figures {
+    pub(crate) fn call(&self) -> Call {
+        self.call_of("figures")
+    }
+
+    fn call_of(&self, command: &str) -> Call {
+        let runs = self.runs.iter().map(String::as_str);
+        runs.fold(Call::new(Binary::Runner, command), |call, run| call.value("run", run))
+            .option("policy", self.policy.as_deref())
+            .option("stage", self.stage)
+            .option("episodes", self.episodes.map(|episodes| episodes.to_string()))
+            .option("out", self.out.as_deref())
+    }
+
+    pub(crate) fn run(self) -> anyhow::Result<ExitCode> {
+        self.call().run()
+    }
+}
+
+impl Report {
+    pub(crate) fn call(&self) -> Call {
+        self.figures.call_of("report").switch("open", self.open)
+    }
+
+    pub(crate) fn run(self) -> anyhow::Result<ExitCode> {
+        self.call().run()
+    }
+}
