@@ -87,6 +87,12 @@ pub(super) const ALLOWED: &[Allowed] = &[
     },
     Allowed { name: "jbtg-c", normal: &["jbtg", "safezone"], dev: &["cbindgen"], ..NOTHING },
     Allowed { name: "jbtg-bare", normal: &["jbtg", "safezone"], ..NOTHING },
+    Allowed {
+        name: "peers",
+        normal: &["jbtg", "safezone", "rsruckig", "ruckig"],
+        dev: &["criterion"],
+        ..NOTHING
+    },
     Allowed { name: "xtask", normal: &["anyhow", "object", "serde_json"], ..NOTHING },
 ];
 
@@ -130,6 +136,7 @@ mod tests {
             ("runner", vec!["adaptive-ctrl", "figures", "hiab-dynamics", "jbtg", "safezone", "sac-burn"]),
             ("jbtg-c", vec!["jbtg", "safezone"]),
             ("jbtg-bare", vec!["jbtg", "safezone"]),
+            ("peers", vec!["jbtg", "safezone"]),
             ("xtask", vec![]),
         ] {
             let allowed = ALLOWED.iter().find(|allowed| allowed.name == name).unwrap();
