@@ -189,7 +189,7 @@ typedef struct {
    */
   jbtg_limits limits;
   /*
-   Duration of one step \[s\], > 0.
+   Duration of one step in seconds, > 0.
    */
   double period;
   /*
@@ -405,7 +405,7 @@ jbtg_status jbtg_plan_waypoint(const jbtg_joint *joint,
                                jbtg_step *step);
 
 /*
- State `time` after the start of the step [s]; before it the first state, after it the last.
+ State `time` seconds after the start of the step; before it the first state, after it the last.
  */
 jbtg_status jbtg_step_state_at(const jbtg_step *step, double time, jbtg_state *out);
 

@@ -164,7 +164,7 @@ pub extern "C" fn jbtg_plan_waypoint(
     write(step, planned.map(|trajectory| Step { trajectory }).map_err(Status::from))
 }
 
-/// State `time` after the start of the step [s]; before it the first state, after it the last.
+/// State `time` seconds after the start of the step; before it the first state, after it the last.
 #[unsafe(no_mangle)]
 pub extern "C" fn jbtg_step_state_at(
     step: Option<&Step>,

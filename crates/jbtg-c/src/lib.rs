@@ -1,12 +1,13 @@
 #![doc = include_str!("../README.md")]
 //!
 //! # Feature flags
-//! - `std` (default): the standard library.
-//! - `libm`: square roots from `libm`, for `no_std` targets; a panic, which no function can reach, would halt.
+//! - `std` (default): square roots from the standard library.
+//! - `libm`: square roots from `libm`, for targets without an operating system; a panic, which no function can reach,
+//!   would halt there.
 //!
 //! Values cross the border by copy and objects live in memory that the caller provides, so there is no unsafe block
 //! here: a pointer from C is an `Option` of a reference.
-#![cfg_attr(not(feature = "std"), no_std)]
+#![cfg_attr(target_os = "none", no_std)]
 #![deny(unsafe_code)]
 
 mod functions;
@@ -28,7 +29,7 @@ pub use types::{
 };
 
 /// Halts. No exported function can panic, which `cargo xtask footprint` checks.
-#[cfg(all(not(feature = "std"), target_os = "none"))]
+#[cfg(target_os = "none")]
 #[panic_handler]
 fn halt(_: &core::panic::PanicInfo<'_>) -> ! {
     loop {

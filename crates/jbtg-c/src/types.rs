@@ -70,7 +70,7 @@ impl TryFrom<Limits> for jbtg::Limits {
 pub struct Spec {
     /// Limits of the joint.
     pub limits: Limits,
-    /// Duration of one step \[s\], > 0.
+    /// Duration of one step in seconds, > 0.
     pub period: f64,
     /// Shape of the acceleration ramps, a constant.
     pub shape: u32,

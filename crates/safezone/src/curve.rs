@@ -84,7 +84,9 @@ impl<'a> Curve<'a> {
     }
 
     pub(crate) fn knots(&self) -> &[Knot] {
-        &self.knots
+        // Owned with the feature `build`, a slice without it.
+        let knots: &Knots<'a> = &self.knots;
+        knots
     }
 
     /// The last knot's velocity [rad/s or m/s].
