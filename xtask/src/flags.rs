@@ -173,6 +173,55 @@ pub(crate) const COMMANDS: &[Command] = &[
         example: "cargo xtask footprint",
     },
     Command {
+        name: "track",
+        summary: "Track scenarios with a control law and print how well",
+        flags: &[
+            required("scenario", "NAME", "file of assets/scenarios without its ending, or all"),
+            optional(
+                "controller",
+                "LAW",
+                "adaptive (default), pd, pid, computed-torque or computed-torque-exact",
+            ),
+            optional("feedforward", "MODEL", "none, nominal (default) or exact; computed torque takes none"),
+            optional("json", "FILE", "write the results there as JSON"),
+            optional("csv", "FILE", "write the motion of the one scenario there as CSV"),
+        ],
+        example: "cargo xtask track --scenario policy-payload-200 --controller pid",
+    },
+    Command {
+        name: "tune",
+        summary: "Tune the gains of the control laws on assets/scenarios/training",
+        flags: &[
+            optional("controller", "LAW", "adaptive, pd, pid or computed-torque, instead of all"),
+            optional("plant", "PLANT", "electric or light (hydraulic and rigid), instead of both"),
+            optional("budget", "N", "rounds of the search per law (default 100)"),
+            optional("seed", "N", "seed of the search (default 0)"),
+        ],
+        example: "cargo xtask tune --controller pd --plant electric",
+    },
+    Command {
+        name: "ablation",
+        summary: "Send a policy's recorded actions with and without jerk-bounded motion",
+        flags: &[
+            optional("json", "FILE", "write the numbers there as JSON"),
+            optional("out", "DIR", "draw lift's motion there as ablation.svg and ablation.png"),
+        ],
+        example: "cargo xtask ablation --out docs/figures",
+    },
+    Command {
+        name: "record",
+        summary: "Record one episode of a trained policy, for scenarios",
+        flags: &[
+            required("run", "NAME", "folder of the run under runs/"),
+            required("stage", "STAGE", "purple, yellow or orange: whose policy"),
+            required("episode", "N", "number of the episode"),
+            required("out", "FILE", "where the actions go"),
+            optional("region", "STAGE", "where start and target lie, instead of the stage's region"),
+            optional("seed", "N", "seed of start and target, instead of the run's"),
+        ],
+        example: "cargo xtask record --run first --stage purple --episode 0 --out episode.ron",
+    },
+    Command {
         name: "tidy",
         summary: "Check the layering and what else clippy cannot see",
         flags: &[],
@@ -206,6 +255,19 @@ pub(crate) const SHAPES: &[&str] = &["smoothstep", "sine-quintic"];
 /// Timings that `profile` knows.
 pub(crate) const TIMINGS: &[&str] = &["stretched", "fastest"];
 
+/// Control laws that `track` knows.
+pub(crate) const CONTROLLERS: &[&str] =
+    &["adaptive", "pd", "pid", "computed-torque", "computed-torque-exact"];
+
+/// Control laws that `tune` finds gains for.
+pub(crate) const TUNED: &[&str] = &["adaptive", "pd", "pid", "computed-torque"];
+
+/// What a feedforward may know.
+pub(crate) const FEEDFORWARDS: &[&str] = &["none", "nominal", "exact"];
+
+/// Plants that gains are tuned for.
+pub(crate) const PLANTS: &[&str] = &["electric", "light"];
+
 /// A command line that has been understood. Paths are absolute.
 #[derive(Debug)]
 pub(crate) enum Invocation {
@@ -221,6 +283,10 @@ pub(crate) enum Invocation {
     Dynamics(Dynamics),
     LoadChart(LoadChart),
     Footprint,
+    Track(Track),
+    Tune(Tune),
+    Ablation(Ablation),
+    Record(Record),
     Tidy,
 }
 
@@ -317,6 +383,39 @@ pub(crate) struct LoadChart {
     pub(crate) svg: Option<PathBuf>,
 }
 
+#[derive(Debug, PartialEq)]
+pub(crate) struct Track {
+    pub(crate) scenario: String,
+    pub(crate) controller: Option<&'static str>,
+    pub(crate) feedforward: Option<&'static str>,
+    pub(crate) json: Option<PathBuf>,
+    pub(crate) csv: Option<PathBuf>,
+}
+
+#[derive(Debug, PartialEq)]
+pub(crate) struct Tune {
+    pub(crate) controller: Option<&'static str>,
+    pub(crate) plant: Option<&'static str>,
+    pub(crate) budget: Option<u64>,
+    pub(crate) seed: Option<u64>,
+}
+
+#[derive(Debug, PartialEq)]
+pub(crate) struct Ablation {
+    pub(crate) json: Option<PathBuf>,
+    pub(crate) out: Option<PathBuf>,
+}
+
+#[derive(Debug, PartialEq)]
+pub(crate) struct Record {
+    pub(crate) run: String,
+    pub(crate) stage: &'static str,
+    pub(crate) episode: u64,
+    pub(crate) out: PathBuf,
+    pub(crate) region: Option<&'static str>,
+    pub(crate) seed: Option<u64>,
+}
+
 impl Invocation {
     /// From the words after `cargo xtask`.
     pub(crate) fn parse(words: Vec<String>) -> Result<Self, UsageError> {
@@ -403,6 +502,28 @@ impl Invocation {
                 svg: parsed.file("svg")?,
             }),
             "footprint" => Self::Footprint,
+            "track" => Self::Track(Track {
+                scenario: parsed.given("scenario", parsed.run_name("scenario")?)?,
+                controller: parsed.one_of("controller", CONTROLLERS)?,
+                feedforward: parsed.one_of("feedforward", FEEDFORWARDS)?,
+                json: parsed.file("json")?,
+                csv: parsed.file("csv")?,
+            }),
+            "tune" => Self::Tune(Tune {
+                controller: parsed.one_of("controller", TUNED)?,
+                plant: parsed.one_of("plant", PLANTS)?,
+                budget: parsed.integer("budget", 1)?,
+                seed: parsed.integer("seed", 0)?,
+            }),
+            "ablation" => Self::Ablation(Ablation { json: parsed.file("json")?, out: parsed.file("out")? }),
+            "record" => Self::Record(Record {
+                run: parsed.given("run", parsed.run_name("run")?)?,
+                stage: parsed.given("stage", parsed.one_of("stage", STAGES)?)?,
+                episode: parsed.given("episode", parsed.integer("episode", 0)?)?,
+                out: parsed.given("out", parsed.file("out")?)?,
+                region: parsed.one_of("region", STAGES)?,
+                seed: parsed.integer("seed", 0)?,
+            }),
             "tidy" => Self::Tidy,
             _ => Self::Help(None),
         })

@@ -14,11 +14,13 @@ mod footprint;
 mod help;
 mod load_chart;
 mod profile;
+mod record;
 mod runner;
 mod soak;
 mod suggest;
 mod tables;
 mod tidy;
+mod track;
 mod train;
 mod zone;
 
@@ -61,6 +63,10 @@ fn dispatch(invocation: Invocation) -> anyhow::Result<ExitCode> {
         Invocation::Dynamics(flags) => flags.run(),
         Invocation::LoadChart(flags) => flags.run(),
         Invocation::Footprint => footprint::run(),
+        Invocation::Track(flags) => flags.run(),
+        Invocation::Tune(flags) => flags.run(),
+        Invocation::Ablation(flags) => flags.run(),
+        Invocation::Record(flags) => flags.run(),
         Invocation::Tidy => tidy::run(),
     }
 }

@@ -123,6 +123,11 @@ impl AdaptiveController {
         })
     }
 
+    /// The gains that it was built with.
+    pub fn gains(&self) -> &GainsSpec {
+        &self.gains
+    }
+
     /// φ̂₁ and φ̂₂ as they are now.
     pub fn parameters(&self) -> Parameters {
         Parameters { position: self.position_law.estimate(), velocity: self.velocity_law.estimate() }

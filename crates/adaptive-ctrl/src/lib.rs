@@ -46,6 +46,7 @@
 
 mod adaptive;
 mod any;
+mod ball;
 mod coupled;
 mod gains;
 mod interface;
@@ -60,6 +61,7 @@ mod table;
 
 pub use adaptive::{Adaptation, AdaptiveController, Parameters};
 pub use any::AnyController;
+pub use ball::{OperatingRange, UltimateBound};
 pub use coupled::coupled_damping_per_tick;
 pub use gains::{Gains, GainsError, GainsSpec};
 pub use interface::{Command, HoldError, Input, JointController, Measurement, Reference, Saturation};

@@ -9,25 +9,29 @@ pub const GAIN_TABLE_SCHEMA: u32 = 1;
 /// A gain file as written down; not yet checked.
 #[derive(Clone, Debug, PartialEq, serde::Deserialize, serde::Serialize)]
 #[serde(deny_unknown_fields)]
-pub struct GainTableSpec {
+pub struct GainTableSpec<G = Gains> {
     /// Must be [`GAIN_TABLE_SCHEMA`].
     pub schema: u32,
     /// Gains by joint name.
-    pub joints: BTreeMap<String, Gains>,
+    pub joints: BTreeMap<String, G>,
 }
 
-/// Gains by joint name. Invariant: of the schema that this crate knows.
+/// Gains by joint name, of the adaptive law unless said otherwise. Invariant: of the schema that this crate knows.
 #[derive(Clone, Debug, PartialEq, serde::Deserialize, serde::Serialize)]
-#[serde(try_from = "GainTableSpec", into = "GainTableSpec")]
-pub struct GainTable(GainTableSpec);
+#[serde(
+    try_from = "GainTableSpec<G>",
+    into = "GainTableSpec<G>",
+    bound(deserialize = "G: serde::Deserialize<'de>", serialize = "G: Clone + serde::Serialize")
+)]
+pub struct GainTable<G = Gains>(GainTableSpec<G>);
 
-impl GainTable {
+impl<G: Copy> GainTable<G> {
     /// Gains of the joints named, in that order.
     ///
     /// # Errors
     /// [`GainTableError`] if a joint has no gains, or the table has some for a joint not named: a
     /// misspelt name is never passed over.
-    pub fn in_order(&self, joints: &[&str]) -> Result<Vec<Gains>, GainTableError> {
+    pub fn in_order(&self, joints: &[&str]) -> Result<Vec<G>, GainTableError> {
         let known = || self.0.joints.keys().cloned().collect();
         let gains = |&joint: &&str| {
             let missing = || GainTableError::Missing { joint: joint.to_owned(), known: known() };
@@ -41,10 +45,10 @@ impl GainTable {
     }
 }
 
-impl TryFrom<GainTableSpec> for GainTable {
+impl<G> TryFrom<GainTableSpec<G>> for GainTable<G> {
     type Error = GainTableError;
 
-    fn try_from(spec: GainTableSpec) -> Result<Self, GainTableError> {
+    fn try_from(spec: GainTableSpec<G>) -> Result<Self, GainTableError> {
         match spec.schema {
             GAIN_TABLE_SCHEMA => Ok(Self(spec)),
             found => Err(GainTableError::Schema { found, expected: GAIN_TABLE_SCHEMA }),
@@ -52,8 +56,8 @@ impl TryFrom<GainTableSpec> for GainTable {
     }
 }
 
-impl From<GainTable> for GainTableSpec {
-    fn from(table: GainTable) -> Self {
+impl<G> From<GainTable<G>> for GainTableSpec<G> {
+    fn from(table: GainTable<G>) -> Self {
         table.0
     }
 }

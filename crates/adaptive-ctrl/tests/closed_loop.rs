@@ -3,7 +3,7 @@
 
 use adaptive_ctrl::{
     AdaptiveController, Bounds, EffortLimits, Gains, GainsSpec, InverseInertia, JointController, JointSpec,
-    Measurement, Reference, Saturation,
+    Measurement, Reference, Saturation, UltimateBound,
 };
 use proptest::prelude::*;
 
@@ -87,6 +87,64 @@ proptest! {
         let ball = 2.0 * (constant.abs() + swing + 0.1 * inertia) / stiffness + 1e-6;
         prop_assert!(worst <= 2.0 * offset.abs() + ball, "worst error {worst}");
         prop_assert!(worst_late <= ball, "error {worst_late} after 2 s, expected {ball}");
+    }
+}
+
+/// A joint of constant inertia about rest, from its adaptive controller's point of view.
+fn ball(inertia: f64, start: (f64, f64), disturbance: f64) -> UltimateBound {
+    let range = InverseInertia::of_inertia(Bounds { lower: inertia, upper: inertia }).unwrap();
+    let ceilings = controller(1e7).parameter_ceilings();
+    UltimateBound::of_adaptive(&GAINS, ceilings, PERIOD, range, start, disturbance).unwrap().unwrap().0
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig::with_cases(64))]
+
+    /// The disturbance is any bounded sequence, worst ones among them: `pattern` names its sign tick by tick.
+    #[test]
+    fn errors_never_leave_the_predicted_ball_once_inside(
+        inertia in LIGHT..HEAVY,
+        bound in 100.0..20e3_f64,
+        position in -5e-4..5e-4_f64,
+        velocity in -0.02..0.02_f64,
+        run_length in 1u32..400,
+        pattern in proptest::collection::vec(-1.0..1.0_f64, 32),
+        extreme in any::<bool>(),
+    ) {
+        let predicted = ball(inertia, (position, velocity), bound);
+        let mut controller = controller(1e7);
+        let mut joint = Joint { inertia, position, velocity };
+        let radius = predicted.radius(bound);
+        let mut allowed = predicted.distance(position, velocity);
+        for tick in 0..6000_u32 {
+            let share = pattern[(tick / run_length) as usize % pattern.len()];
+            let share = if extreme { share.signum() } else { share };
+            let command = controller.step(Reference::default(), joint.measured());
+            joint.advance(command.effort + bound * share);
+            // Contracts towards the ball tick by tick, and stays in it.
+            allowed = predicted.contraction() * allowed + (1.0 - predicted.contraction()) * radius;
+            let distance = predicted.distance(joint.position, joint.velocity);
+            prop_assert!(
+                distance <= allowed * (1.0 + 1e-9),
+                "tick {tick}: {distance} exceeds {allowed}, ball {radius}"
+            );
+        }
+        prop_assert!(allowed <= radius * 1.01, "3 s should bring any start to the ball: {allowed}, {radius}");
+    }
+}
+
+#[test]
+fn the_ball_is_not_much_larger_than_what_the_worst_load_does() {
+    // A constant load at the bound is the plainest disturbance; the ball must not be orders above it.
+    for inertia in [LIGHT, 9000.0, HEAVY] {
+        let predicted = ball(inertia, (0.0, 0.0), 5e3);
+        let (mut controller, mut joint) = (controller(1e7), Joint { inertia, position: 0.0, velocity: 0.0 });
+        for _ in 0..6000 {
+            let command = controller.step(Reference::default(), joint.measured());
+            joint.advance(command.effort + 5e3);
+        }
+        let bound = predicted.position(predicted.radius(5e3));
+        assert!(bound < 8.0 * joint.position.abs(), "{bound} against {}", joint.position);
     }
 }
 

@@ -11,13 +11,18 @@
 //! - `figures` (default): pictures of runs and of motion.
 #![forbid(unsafe_code)]
 
+#[cfg(feature = "training")]
+pub mod actions;
 pub mod arguments;
 pub mod command;
 pub mod config;
+pub mod control;
+pub mod course;
 pub mod draw;
 pub mod environment;
 pub mod evidence;
 mod feedforward;
+pub mod governor;
 mod interpolation;
 pub mod kinematics;
 pub mod machine;
@@ -30,6 +35,10 @@ pub mod region;
 pub mod stage;
 pub mod statistics;
 pub mod store;
+pub mod suggest;
+pub mod surroundings;
+pub mod track;
+pub mod tune;
 
 #[cfg(feature = "training")]
 pub mod certificate;

@@ -2,7 +2,7 @@
 
 use std::path::Path;
 
-use adaptive_ctrl::{AdaptiveController, Bounds, EffortLimits, GainTable, InverseInertia, JointSpec};
+use adaptive_ctrl::{AdaptiveController, Bounds, EffortLimits, GainTable, Gains, InverseInertia, JointSpec};
 use anyhow::{Context, Result, anyhow, ensure};
 use hiab_dynamics::{Actuator, CraneModel, LoopFile, PlantFile};
 use jbtg::{Interval, Limits, LimitsSpec, Planner, PlannerSpec, SymmetricLimits};
@@ -10,6 +10,7 @@ use safezone::{BrakingTable, SafeZone};
 
 use crate::config::{ConfigSpec, Feedforward, Rates, Reward, Task, TrackingMargin, read_ron};
 use crate::environment::MAX_MOVING;
+use crate::governor::GENTLE;
 use crate::observation::{Scaling, ScalingSpec};
 use crate::region::Regions;
 use crate::store;
@@ -31,8 +32,23 @@ pub struct Joint {
     pub effort_limit: f64,
     /// Its safe velocities. The limits there are the actuator's less the tracking margin.
     pub zone: SafeZone<'static>,
+    /// The same for gentle accelerations, which effort suffices for under load.
+    pub gentle_zone: SafeZone<'static>,
+    /// What its controller is told about it.
+    pub spec: JointSpec,
+    /// Its gains of the adaptive law.
+    pub gains: Gains,
     /// Its controller, as built.
     pub controller: AdaptiveController,
+}
+
+/// Where braking distances come from.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Zones {
+    /// The tables on disk, checked against the configuration.
+    FromTables,
+    /// Their closed form, for a motion that no tables were built for.
+    ClosedForm,
 }
 
 /// Everything about the crane that does not change while it moves.
@@ -72,6 +88,14 @@ impl Machine {
     /// A file is missing or wrong, a name in one is not in another, a braking table is stale, or a controller would
     /// not be stable; the message names file, field and cause.
     pub fn load(config: &ConfigSpec) -> Result<Self> {
+        Self::load_with(config, Zones::FromTables)
+    }
+
+    /// [`Machine::load`], with braking distances from where `zones` says.
+    ///
+    /// # Errors
+    /// As there; in closed form also a timing or jerk limits that have none.
+    pub fn load_with(config: &ConfigSpec, zones: Zones) -> Result<Self> {
         let crane = &config.crane;
         let model = load_model(config)?;
         let gains: GainTable = read_ron(&crane.gains)?;
@@ -95,8 +119,12 @@ impl Machine {
             .zip(&survey.inverse_inertia)
             .map(|((actuator, gains), inertia)| {
                 let limits = actuator_limits(actuator).with_context(|| in_loops(crane, actuator))?;
-                let zone = load_zone(config, actuator)?;
-                let joint = JointSpec {
+                let zone = match zones {
+                    Zones::FromTables => load_zone(config, actuator)?,
+                    Zones::ClosedForm => SafeZone::closed_form(planner(actuator, config)?)?,
+                };
+                let gentle_zone = gentle_zone(zone.planner()).with_context(|| in_loops(crane, actuator))?;
+                let spec = JointSpec {
                     period,
                     inverse_inertia: InverseInertia::try_from(Bounds {
                         lower: inertia.min,
@@ -104,10 +132,10 @@ impl Machine {
                     })?,
                     effort_limits: EffortLimits::symmetric(actuator.effort_limit())?,
                 };
-                let controller = AdaptiveController::new(gains, joint)
+                let controller = AdaptiveController::new(gains, spec)
                     .with_context(|| format!("{}: {}", crane.gains.display(), actuator.name()))?;
                 let (name, effort_limit) = (actuator.name().to_owned(), actuator.effort_limit());
-                Ok(Joint { name, limits, effort_limit, zone, controller })
+                Ok(Joint { name, limits, effort_limit, zone, gentle_zone, spec, gains, controller })
             })
             .collect::<Result<Vec<_>>>()?;
         let (rates, task, reward) = (config.rates, config.task.clone(), config.reward);
@@ -129,6 +157,20 @@ impl Machine {
             reward,
             regions,
         })
+    }
+
+    /// The same machine with another crane behind it: what its controllers know stays as it is.
+    #[must_use]
+    pub fn with_simulated(mut self, model: CraneModel) -> Self {
+        self.model = model;
+        self
+    }
+
+    /// The same machine whose controllers know `model`, or none.
+    #[must_use]
+    pub fn with_nominal_model(mut self, model: Option<CraneModel>) -> Self {
+        self.nominal = model;
+        self
     }
 
     /// The rigid bodies and the plant.
@@ -318,6 +360,21 @@ pub fn load_zone(config: &ConfigSpec, actuator: &Actuator) -> Result<SafeZone<'s
     SafeZone::new(planner, table).with_context(remedy)
 }
 
+/// The safe zone of the same joint with [`GENTLE`] of its acceleration; its table is small, and built here.
+fn gentle_zone(planner: &Planner) -> Result<SafeZone<'static>> {
+    let limits = planner.limits();
+    let share = |interval: Interval| Interval::new(GENTLE * interval.min, GENTLE * interval.max);
+    let gentle = Limits::try_from(LimitsSpec {
+        position: limits.position(),
+        velocity: limits.velocity(),
+        acceleration: share(limits.acceleration()),
+        jerk: limits.jerk(),
+    })?;
+    let planner = Planner::try_from(PlannerSpec { limits: gentle, ..*planner.spec() })?;
+    let table = BrakingTable::build(&planner)?;
+    Ok(SafeZone::new(planner, table)?)
+}
+
 fn read_table(path: &Path) -> Result<BrakingTable<'static>> {
     let text = store::read_text(path)?;
     BrakingTable::from_ron(&text).map_err(|error| anyhow!("{error}"))
@@ -384,7 +441,7 @@ fn survey(
     let still = vec![0.0; joints];
     let mut diagonal = vec![0.0; joints];
     let mut jacobian = vec![0.0; 6 * joints];
-    for model in [model, &unloaded] {
+    for (model, is_known) in [(model, false), (&unloaded, true)] {
         let mut data = model.new_data();
         for number in 0..SURVEY_POINTS.pow(moving.len() as u32) {
             let mut posture = rest_posture.to_vec();
@@ -396,9 +453,12 @@ fn survey(
                 rest /= SURVEY_POINTS;
             }
             model.update_dynamics(&mut data, &posture, &still)?;
-            model.inverse_effective_inertia(&mut data, &mut diagonal)?;
-            for (range, &value) in survey.inverse_inertia.iter_mut().zip(&diagonal) {
-                *range = range.including(value);
+            // The controllers are built for the crane that they know: no payload.
+            if is_known {
+                model.inverse_effective_inertia(&mut data, &mut diagonal)?;
+                for (range, &value) in survey.inverse_inertia.iter_mut().zip(&diagonal) {
+                    *range = range.including(value);
+                }
             }
             for (boom, &tree_joint) in booms.iter().enumerate() {
                 let limit = model.actuators()[model.driving_actuator(tree_joint)].velocity_limit();

@@ -2,17 +2,21 @@
 
 use std::sync::Arc;
 
-use adaptive_ctrl::{AdaptiveController, JointController, Measurement, Reference, Saturation};
+use adaptive_ctrl::{Command, Input, Measurement, Reference, Saturation};
 use anyhow::{Context, Result};
 use hiab_dynamics::{CraneModel, Data};
-use jbtg::{Extrema, Interval, State, Trajectory};
+use jbtg::{Extrema, Interval, State};
 use safezone::{Request, Source};
 
 use crate::config::Integrator;
+use crate::control::Controllers;
+use crate::course::{Course, Profile};
 use crate::evidence::Evidence;
 use crate::feedforward::Feedforward;
+use crate::governor::{Governor, Overload};
 use crate::interpolation::Interpolation;
-use crate::machine::Machine;
+use crate::machine::{Joint, Machine};
+use crate::surroundings::{Surroundings, Tick};
 
 /// Rounds after which load and resting place agree to rounding.
 const HOLDING_ROUNDS: u32 = 5;
@@ -24,12 +28,29 @@ const HOLDING_ROUNDS: u32 = 5;
 pub struct Motion {
     machine: Arc<Machine>,
     data: Data,
-    controllers: Vec<AdaptiveController>,
+    controllers: Controllers,
+    surroundings: Surroundings,
+    profile: Profile,
+    governor: Governor,
+    /// Since the start \[s\].
+    time: f64,
     position: Vec<f64>,
     velocity: Vec<f64>,
     acceleration: Vec<f64>,
+    /// What the controllers command.
     effort: Vec<f64>,
+    /// What they commanded a tick ago, which a late command leaves in force for one tick more.
+    effort_before: Vec<f64>,
+    is_late: bool,
+    /// What the actuators exert.
+    exerted: Vec<f64>,
     feedforward: Feedforward,
+    /// Where every joint should be at the end of the present tick.
+    wanted: Vec<State>,
+    /// Controllers' inputs and outputs of the present tick.
+    references: Vec<Reference>,
+    measured: Vec<Measurement>,
+    commands: Vec<Command>,
     /// Scratch: velocities before the present tick.
     velocity_before: Vec<f64>,
     /// Scratch: another posture than the present one.
@@ -39,7 +60,7 @@ pub struct Motion {
     /// Every joint's reference from its last sample to the next.
     between: Vec<Interpolation>,
     /// This period's reference of every moving joint, in the order of the actions.
-    trajectories: Vec<Trajectory>,
+    courses: Vec<Course>,
     evidence: Evidence,
     watch_held_joints: bool,
 }
@@ -51,10 +72,35 @@ impl Motion {
     /// costs two forward kinematics each.
     #[must_use]
     pub fn new(machine: Arc<Machine>, watch_held_joints: bool) -> Self {
+        let controllers = Controllers::adaptive(&machine);
+        Self::with(machine, controllers, Surroundings::calm(), Profile::JerkBounded, watch_held_joints)
+    }
+
+    /// The same with other controllers, surroundings that disturb, or another way to change velocity.
+    #[must_use]
+    pub fn with(
+        machine: Arc<Machine>,
+        controllers: Controllers,
+        surroundings: Surroundings,
+        profile: Profile,
+        watch_held_joints: bool,
+    ) -> Self {
         let joints = machine.joints().len();
+        let idle = Command { effort: 0.0, saturation: Saturation::None, input: Input::Used };
         Self {
             data: machine.model().new_data(),
-            controllers: machine.joints().iter().map(|joint| joint.controller.clone()).collect(),
+            controllers,
+            surroundings,
+            profile,
+            governor: Governor::new(joints),
+            time: 0.0,
+            effort_before: vec![0.0; joints],
+            is_late: false,
+            exerted: vec![0.0; joints],
+            wanted: vec![at_rest(0.0); joints],
+            references: vec![Reference::default(); joints],
+            measured: vec![Measurement::default(); joints],
+            commands: vec![idle; joints],
             position: vec![0.0; joints],
             velocity: vec![0.0; joints],
             acceleration: vec![0.0; joints],
@@ -64,7 +110,7 @@ impl Motion {
             undisturbed: vec![0.0; joints],
             reference: vec![at_rest(0.0); joints],
             between: vec![Interpolation::at_rest(0.0); joints],
-            trajectories: Vec::with_capacity(machine.moving().len()),
+            courses: Vec::with_capacity(machine.moving().len()),
             evidence: Evidence::none(joints),
             watch_held_joints,
             machine,
@@ -74,7 +120,7 @@ impl Motion {
     /// Puts the crane to rest with its references at `position`, held by its controllers.
     ///
     /// A joint rests a little beside its reference under the load that the feedforward does not know; the crane is put
-    /// there, and its first command is what holds it. [`AdaptiveController`]'s `start_holding` says how far.
+    /// there, and its first command is what holds it. `JointController::start_holding` says how far.
     ///
     /// # Errors
     /// A position that no loop closes at, or a load that the actuators cannot hold.
@@ -90,20 +136,24 @@ impl Motion {
         self.feedforward.update(machine.nominal_model(), &self.between, 0.0, 0.0)?;
         // The load depends on where the crane rests, and that a little on the load: each round leaves about a thousandth
         // of what the last one left.
+        let (mut unknown, mut reference) = (vec![0.0; position.len()], vec![0.0; position.len()]);
         for _ in 0..HOLDING_ROUNDS {
             machine.model().update_dynamics(&mut self.data, &self.position, &self.velocity)?;
             self.effort.copy_from_slice(self.data.gravity_effort());
-            for (joint, setup) in machine.joints().iter().enumerate() {
-                let measured = Measurement { position: self.position[joint], velocity: 0.0 };
-                let unknown = self.effort[joint] - self.feedforward.effort()[joint];
-                let controller = &mut self.controllers[joint];
-                controller.reset();
-                let reference = controller
-                    .start_holding(measured, unknown)
-                    .with_context(|| format!("{} cannot be held at {}", setup.name, measured.position))?;
-                self.position[joint] += position[joint] - reference.position;
+            for (joint, unknown) in unknown.iter_mut().enumerate() {
+                *unknown = self.effort[joint] - self.feedforward.effort()[joint];
+            }
+            self.controllers.hold(&machine, &self.position, &unknown, &mut reference)?;
+            for (joint, reference) in reference.iter().enumerate() {
+                self.position[joint] += position[joint] - reference;
             }
         }
+        self.time = 0.0;
+        let limits = machine.joints().iter().map(|joint| joint.effort_limit);
+        self.governor.start(unknown.into_iter().zip(limits));
+        self.is_late = false;
+        self.effort_before.copy_from_slice(&self.effort);
+        self.exerted.copy_from_slice(&self.effort);
         for (joint, setup) in machine.joints().iter().enumerate() {
             let point = |value| Interval { min: value, max: value };
             let extrema = Extrema {
@@ -157,16 +207,18 @@ impl Motion {
             self.witness(&machine, f64::from(tick + 1 - sampled_at) * tick_period, tick_period);
             see(self);
         }
-        for (&joint, trajectory) in machine.moving().iter().zip(&self.trajectories) {
-            let end = trajectory.end();
-            self.reference[joint] = end;
+        for (&joint, course) in machine.moving().iter().zip(&self.courses) {
+            self.reference[joint] = course.end();
         }
         Ok(())
     }
 
     /// Chooses each moving joint's next velocity within its safe range, and plans the way there.
     fn plan(&mut self, machine: &Machine, actions: &[Request]) -> Result<()> {
-        self.trajectories.clear();
+        self.courses.clear();
+        let errors = self.position.iter().zip(&self.reference).map(|(at, wanted)| at - wanted.position);
+        // Part of the generator: actions that are sent on without it are slowed by nothing.
+        let is_gentle = self.governor.judge(errors) && self.profile == Profile::JerkBounded;
         for (&joint, &action) in machine.moving().iter().zip(actions) {
             let setup = &machine.joints()[joint];
             let State { position, velocity, .. } = self.reference[joint];
@@ -178,15 +230,39 @@ impl Motion {
             self.evidence.failsafe_commands += u64::from(matches!(command.source, Source::FailSafe(_)));
             self.evidence.clamped_actions +=
                 u64::from(matches!(command.source, Source::PolicyClamped { .. }));
-            let trajectory =
-                setup.zone.planner().ramp(position, velocity, command.velocity).with_context(|| {
-                    format!("{}: the zone allowed what the generator cannot do", setup.name)
-                })?;
-            let extrema = trajectory.extrema();
-            self.evidence.add_reference(joint, &extrema, &setup.limits, setup.zone.planner().limits());
-            self.trajectories.push(trajectory);
+            let velocity = if is_gentle {
+                // The gentle zone where it can have its way, the full one in any case.
+                let wanted = setup.gentle_zone.command(position, velocity, action).velocity;
+                wanted.clamp(range.min, range.max)
+            } else {
+                command.velocity
+            };
+            let course = self.course(setup, joint, velocity)?;
+            self.courses.push(course);
         }
         Ok(())
+    }
+
+    /// The way of one joint to `velocity`.
+    fn course(&mut self, setup: &Joint, joint: usize, wanted: f64) -> Result<Course> {
+        let State { position, velocity, .. } = self.reference[joint];
+        let planner = setup.zone.planner();
+        let period = self.machine.rates().policy_period();
+        match self.profile {
+            Profile::JerkBounded => {
+                let trajectory = planner.ramp(position, velocity, wanted).with_context(|| {
+                    format!("{}: the zone allowed what the generator cannot do", setup.name)
+                })?;
+                let extrema = trajectory.extrema();
+                self.evidence.add_reference(joint, &extrema, &setup.limits, planner.limits());
+                Ok(Course::JerkBounded(trajectory))
+            }
+            Profile::Step => Ok(Course::ramp(position, velocity, wanted, period, None)),
+            Profile::Trapezoid => {
+                let limit = planner.limits().acceleration().max;
+                Ok(Course::ramp(position, velocity, wanted, period, Some(limit)))
+            }
+        }
     }
 
     /// Samples the reference of the moving joints at `tick` of this period, and one sample ahead.
@@ -194,27 +270,38 @@ impl Motion {
         let rates = machine.rates();
         let time = |tick: u32| f64::from(tick) * rates.tick_period();
         let next = (tick + rates.reference_divider).min(rates.policy_divider);
-        for (&joint, trajectory) in machine.moving().iter().zip(&self.trajectories) {
-            let end =
-                if next == rates.policy_divider { trajectory.end() } else { trajectory.state_at(time(next)) };
-            self.between[joint] = Interpolation::new(trajectory.state_at(time(tick)), end, time(next - tick));
+        for (&joint, course) in machine.moving().iter().zip(&self.courses) {
+            let end = if next == rates.policy_divider { course.end() } else { course.state_at(time(next)) };
+            self.between[joint] = Interpolation::new(course.state_at(time(tick)), end, time(next - tick));
         }
     }
 
     /// One command of every controller, `ahead` of the reference's last sample.
     fn control(&mut self, machine: &Machine, ahead: f64) -> Result<()> {
+        let tick = self.surroundings.tick();
+        if tick == Tick::Dropped {
+            return Ok(());
+        }
+        self.is_late = tick == Tick::Late;
+        self.effort_before.copy_from_slice(&self.effort);
         let period = machine.rates().controller_period();
         self.feedforward.update(machine.nominal_model(), &self.between, ahead, period)?;
-        for (joint, controller) in self.controllers.iter_mut().enumerate() {
+        for joint in 0..self.between.len() {
             let wanted = self.between[joint].state_at(ahead);
-            let reference = Reference {
+            self.references[joint] = Reference {
                 position: wanted.position,
                 velocity: wanted.velocity,
-                acceleration: wanted.acceleration,
+                acceleration: self.between[joint].state_at(ahead + 0.5 * period).acceleration,
                 effort: self.feedforward.effort()[joint],
             };
-            let measured = Measurement { position: self.position[joint], velocity: self.velocity[joint] };
-            let command = controller.step(reference, measured);
+            let (position, velocity) = self.surroundings.sensed(self.position[joint], self.velocity[joint]);
+            self.measured[joint] = Measurement { position, velocity };
+        }
+        self.controllers.step(&self.references, &self.measured, &mut self.commands)?;
+        self.governor.tick();
+        for (joint, command) in self.commands.iter().enumerate() {
+            let limit = machine.joints()[joint].effort_limit;
+            self.governor.note(joint, &self.references[joint], command, limit);
             self.effort[joint] = command.effort;
             self.evidence.commands += 1;
             self.evidence.saturated_commands += u64::from(command.saturation != Saturation::None);
@@ -224,13 +311,21 @@ impl Motion {
 
     fn integrate(&mut self, machine: &Machine, period: f64) -> Result<()> {
         self.velocity_before.copy_from_slice(&self.velocity);
+        let commanded = if self.is_late { &self.effort_before } else { &self.effort };
+        for (joint, (exerted, &effort)) in self.exerted.iter_mut().zip(commanded).enumerate() {
+            *exerted = self.surroundings.exerted(joint, effort, self.time);
+        }
+        self.is_late = false;
+        let wrench = self.surroundings.tip_wrench(self.time);
         let step = match machine.rates().integrator {
             Integrator::SemiImplicitEuler => CraneModel::semi_implicit_euler,
             Integrator::Rk4 => CraneModel::rk4,
         };
         let (position, velocity) = (&mut self.position, &mut self.velocity);
-        step(machine.model(), &mut self.data, position, velocity, &self.effort, None, period)
-            .context("the simulated crane cannot go on")
+        step(machine.model(), &mut self.data, position, velocity, &self.exerted, wrench.as_ref(), period)
+            .context("the simulated crane cannot go on")?;
+        self.time += period;
+        Ok(())
     }
 
     /// Notes where every joint really is after a tick, `ahead` of the reference's last sample.
@@ -248,6 +343,7 @@ impl Motion {
             };
             self.acceleration[joint] = acceleration;
             let reference = self.between[joint].state_at(ahead);
+            self.wanted[joint] = reference;
             self.evidence.add_actual(joint, &actual, &reference, &setup.limits);
         }
     }
@@ -320,7 +416,58 @@ impl Motion {
         &self.acceleration
     }
 
-    /// Effort of every actuator [N·m or N].
+    /// Where every joint should be now.
+    #[must_use]
+    pub fn wanted(&self) -> &[State] {
+        &self.wanted
+    }
+
+    /// What every controller was given and what it commanded last.
+    #[must_use]
+    pub fn commands(&self) -> (&[Reference], &[Measurement], &[Command]) {
+        (&self.references, &self.measured, &self.commands)
+    }
+
+    /// The controllers.
+    #[must_use]
+    pub fn controllers(&self) -> &Controllers {
+        &self.controllers
+    }
+
+    /// Policy periods in which the reference was held to gentle accelerations, for load that the feedforward does not
+    /// know.
+    #[must_use]
+    pub fn gentle_periods(&self) -> u64 {
+        self.governor.gentle_periods
+    }
+
+    /// An actuator that does not hold what it carries: whoever moves the crane sets its brakes now.
+    #[must_use]
+    pub fn overload(&self) -> Option<Overload> {
+        let (joint, error) = self.governor.overloaded()?;
+        let name = self.machine.joints()[joint].name.clone();
+        Some(Overload { joint: name, time: self.time, effort: self.effort[joint], error })
+    }
+
+    /// Effort that every actuator exerts [N·m or N].
+    #[must_use]
+    pub fn exerted(&self) -> &[f64] {
+        &self.exerted
+    }
+
+    /// Time since the start \[s\].
+    #[must_use]
+    pub fn time(&self) -> f64 {
+        self.time
+    }
+
+    /// Terms of the dynamics before the last tick.
+    #[must_use]
+    pub fn dynamics(&self) -> &Data {
+        &self.data
+    }
+
+    /// Effort of every actuator as commanded [N·m or N].
     #[must_use]
     pub fn effort(&self) -> &[f64] {
         &self.effort
@@ -334,7 +481,7 @@ impl Motion {
 
     /// Takes what was seen since the last call.
     pub fn take_evidence(&mut self) -> Evidence {
-        std::mem::replace(&mut self.evidence, Evidence::none(self.controllers.len()))
+        std::mem::replace(&mut self.evidence, Evidence::none(self.position.len()))
     }
 }
 

@@ -26,6 +26,10 @@ fn cargo_line(line: &str) -> String {
         Invocation::Soak(flags) => flags.call(),
         Invocation::Dynamics(flags) => flags.call(),
         Invocation::LoadChart(flags) => flags.call(),
+        Invocation::Track(flags) => flags.call(),
+        Invocation::Tune(flags) => flags.call(),
+        Invocation::Ablation(flags) => flags.call(),
+        Invocation::Record(flags) => flags.call(),
         Invocation::Help(_) | Invocation::Footprint | Invocation::Tidy => panic!("{line} runs no child"),
     };
     let words = call.cargo_arguments();
@@ -66,6 +70,12 @@ fn flags_reach_the_child_in_one_form() {
             "zone --json --joint lift --position 0.3 --velocity -0.05",
             format!("{KINEMATICS} zone --joint lift_joint --position 0.3 --velocity -0.05 --json"),
         ),
+        (
+            "track --scenario=policy --controller pid --feedforward none",
+            format!("{KINEMATICS} track --scenario policy --controller pid --feedforward none"),
+        ),
+        ("tune --plant light --budget 7", format!("{KINEMATICS} tune --plant light --budget 7")),
+        ("ablation", KINEMATICS.replace("--bin", "--features figures --bin") + " ablation"),
         (
             "soak --seed 0 --steps=10000000 --case 3 --threads 2",
             format!("{KINEMATICS} soak --steps 10000000 --seed 0 --threads 2 --case 3"),
@@ -144,6 +154,10 @@ fn bad_values_are_refused() {
         ("zone --joint lift --position 1 --velocity inf", "--velocity must be a finite number"),
         ("zone --joint lift --position 1,5 --velocity 0", "got `1,5`"),
         ("train --all --seed -1", "--seed must be a whole number from 0"),
+        ("track --scenario policy --controller pidd", "did you mean `pid`"),
+        ("track --scenario ../policy", "--scenario must be a folder name"),
+        ("tune --plant hydraulic", "electric, light"),
+        ("record --run a --stage purple --out x", "needs --episode N"),
         ("soak --seed 1 --steps 0", "--steps must be a whole number from 1"),
         ("train --all --episodes 0", "--episodes must be a whole number from 1"),
         ("train --all --run ../x", "--run must be a folder name"),

@@ -1,4 +1,5 @@
-//! Commands about motion alone: `tables`, `profile`, `zone`, `soak`, `dynamics`, `load-chart`. Builds without the learner.
+//! Commands about motion alone: `tables`, `profile`, `zone`, `soak`, `dynamics`, `load-chart`, `track`, `tune`,
+//! `ablation`. Builds without the learner.
 #![forbid(unsafe_code)]
 
 use std::path::{Path, PathBuf};
@@ -11,7 +12,13 @@ use runner::arguments::Arguments;
 use runner::command;
 use runner::config::{self, ConfigSpec};
 use runner::kinematics::soak::{self, SoakRequest};
-use runner::kinematics::{self, LoadChartFiles, ProfileRequest, Tables, ZoneFormat};
+use runner::kinematics::{
+    self, AblationRequest, LoadChartFiles, ProfileRequest, Tables, TrackRequest, TuneRequest, ZoneFormat,
+};
+use runner::track::setup::Law;
+
+/// Every command.
+const COMMANDS: &str = "tables, zone, profile, soak, dynamics, load-chart, track, tune and ablation";
 
 fn main() -> ExitCode {
     command::run(dispatch)
@@ -73,9 +80,34 @@ fn dispatch(command: &str, words: Vec<String>) -> Result<String> {
             arguments.finish()?;
             kinematics::load_chart(&config, &files)
         }
-        _ => bail!(
-            "no command is called '{command}'; there are tables, zone, profile, soak, dynamics and load-chart"
-        ),
+        "track" => {
+            let request = TrackRequest {
+                scenario: arguments.required("scenario")?,
+                law: arguments.optional("controller")?.unwrap_or(Law::Adaptive),
+                knowledge: arguments.optional("feedforward")?,
+                json: arguments.optional("json")?,
+                csv: arguments.optional("csv")?,
+            };
+            arguments.finish()?;
+            kinematics::track(&request)
+        }
+        "tune" => {
+            let request = TuneRequest {
+                law: arguments.optional("controller")?,
+                family: arguments.optional("plant")?,
+                budget: arguments.optional("budget")?,
+                seed: arguments.optional("seed")?,
+            };
+            arguments.finish()?;
+            kinematics::tune(&request)
+        }
+        "ablation" => {
+            let request =
+                AblationRequest { json: arguments.optional("json")?, out: arguments.optional("out")? };
+            arguments.finish()?;
+            kinematics::ablation(&request)
+        }
+        _ => bail!("no command is called '{command}'; there are {COMMANDS}"),
     }
 }
 

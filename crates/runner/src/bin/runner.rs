@@ -1,4 +1,4 @@
-//! Commands that learn or use a policy: `train`, `eval`, `figures` and `report`.
+//! Commands that learn or use a policy: `train`, `eval`, `record`, `figures` and `report`.
 #![forbid(unsafe_code)]
 
 use std::path::{Path, PathBuf};
@@ -6,6 +6,7 @@ use std::process::ExitCode;
 use std::sync::Arc;
 
 use anyhow::{Result, anyhow, bail, ensure};
+use runner::actions::Take;
 use runner::arguments::Arguments;
 use runner::config::{self, ConfigSpec, run_folder};
 use runner::draw::Purpose;
@@ -14,7 +15,7 @@ use runner::machine::Machine;
 use runner::progress::Display;
 use runner::stage::Stage;
 use runner::training::{self, Request, Training};
-use runner::{checkpoint, command, store};
+use runner::{actions, checkpoint, command, store};
 #[cfg(feature = "figures")]
 use runner::{gallery, report};
 
@@ -39,9 +40,10 @@ fn dispatch(command: &str, words: Vec<String>) -> Result<String> {
     match command {
         "train" => train(Arguments::parse(words, &["all", "resume", "quiet", "plain"])?),
         "eval" => eval(Arguments::parse(words, &[])?),
+        "record" => record(Arguments::parse(words, &[])?),
         "figures" => figures(Arguments::parse(words, &[])?),
         "report" => report(Arguments::parse(words, &["open"])?),
-        _ => bail!("no command is called '{command}'; there are train, eval, figures and report"),
+        _ => bail!("no command is called '{command}'; there are train, eval, record, figures and report"),
     }
 }
 
@@ -93,13 +95,7 @@ fn eval(mut arguments: Arguments) -> Result<String> {
     let json: Option<PathBuf> = arguments.optional("json")?;
     arguments.finish()?;
     ensure!(episodes > 0, "--episodes must be at least 1");
-    let path = training::best(&run_folder(&run, stage));
-    ensure!(
-        path.exists(),
-        "run '{run}' has no trained stage {stage}: {} is missing; first run: cargo xtask train --stage {stage} --run {run}",
-        path.display()
-    );
-    let (header, agent) = checkpoint::read(&path)?;
+    let (header, agent) = checkpoint::read(&best(&run, stage)?)?;
     let machine = Arc::new(Machine::load(&header.config)?);
     let seed = seed.unwrap_or(header.config.seed);
     let plan = Plan { stage, episodes, seed, purpose: Purpose::Evaluation };
@@ -109,6 +105,32 @@ fn eval(mut arguments: Arguments) -> Result<String> {
         store::write_whole(&path, result.as_bytes())?;
     }
     Ok(result)
+}
+
+fn record(mut arguments: Arguments) -> Result<String> {
+    let run = run_name(Some(arguments.required("run")?))?;
+    let stage: Stage = arguments.required("stage")?;
+    let region: Stage = arguments.optional("region")?.unwrap_or(stage);
+    let episode = arguments.required("episode")?;
+    let seed: Option<u64> = arguments.optional("seed")?;
+    let out: PathBuf = arguments.required("out")?;
+    arguments.finish()?;
+    let (header, agent) = checkpoint::read(&best(&run, stage)?)?;
+    let machine = Arc::new(Machine::load(&header.config)?);
+    let take = Take { stage: region, seed: seed.unwrap_or(header.config.seed), episode };
+    let origin = format!("best policy of stage {stage}, trained with seed {}", header.config.seed);
+    actions::record(agent.policy(), &header.scaling, &machine, take, &origin, &out)
+}
+
+/// The best checkpoint of a run's stage.
+fn best(run: &str, stage: Stage) -> Result<PathBuf> {
+    let path = training::best(&run_folder(run, stage));
+    ensure!(
+        path.exists(),
+        "run '{run}' has no trained stage {stage}: {} is missing; first run: cargo xtask train --stage {stage} --run {run}",
+        path.display()
+    );
+    Ok(path)
 }
 
 #[cfg(feature = "figures")]

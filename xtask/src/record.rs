@@ -1,0 +1,21 @@
+//! `record`: actions of a trained policy as a file.
+
+use crate::flags::Record;
+use crate::runner::{Binary, Call};
+use std::process::ExitCode;
+
+impl Record {
+    pub(crate) fn call(&self) -> Call {
+        Call::new(Binary::Runner, "record")
+            .value("run", self.run.as_str())
+            .value("stage", self.stage)
+            .value("episode", self.episode.to_string())
+            .value("out", self.out.as_os_str())
+            .option("region", self.region)
+            .option("seed", self.seed.map(|seed| seed.to_string()))
+    }
+
+    pub(crate) fn run(self) -> anyhow::Result<ExitCode> {
+        self.call().run()
+    }
+}
