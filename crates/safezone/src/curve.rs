@@ -3,7 +3,7 @@
 #[cfg(feature = "build")]
 use std::borrow::Cow;
 
-use crate::math::sqrt;
+use crate::math::{smaller, sqrt};
 use crate::table::Knot;
 
 #[cfg(feature = "build")]
@@ -18,6 +18,7 @@ pub(crate) type Knots<'a> = &'a [Knot];
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) struct Curve<'a> {
     knots: Knots<'a>,
+    last: Knot,
     /// Velocity from knot to knot [rad/s or m/s].
     spacing: f64,
     per_spacing: f64,
@@ -80,9 +81,11 @@ impl<'a> Curve<'a> {
                 return Err(step * subdivisions);
             }
         }
-        Ok(Self { spacing, per_spacing, subdivisions, steps, parabola, knots })
+        let last = knots[knots.len() - 1];
+        Ok(Self { last, spacing, per_spacing, subdivisions, steps, parabola, knots })
     }
 
+    #[inline]
     pub(crate) fn knots(&self) -> &[Knot] {
         // Owned with the feature `build`, a slice without it.
         let knots: &Knots<'a> = &self.knots;
@@ -92,27 +95,24 @@ impl<'a> Curve<'a> {
     /// The last knot's velocity [rad/s or m/s].
     #[inline]
     pub(crate) fn last_velocity(&self) -> f64 {
-        self.knots.last().map_or(0.0, |knot| knot.velocity)
+        self.last.velocity
     }
 
-    /// The knot at `index`; infinitely far beyond the last one, so that no index can panic.
+    /// Knot `index` and the next one; at most the last two.
     #[inline]
-    fn knot(&self, index: usize) -> Knot {
-        const BEYOND: Knot = Knot { distance: f64::INFINITY, velocity: f64::INFINITY };
-        self.knots.get(index).copied().unwrap_or(BEYOND)
+    fn pair(&self, index: usize) -> (Knot, Knot) {
+        let knots = self.knots();
+        match knots.get(index..index.wrapping_add(2)) {
+            Some(&[low, high]) => (low, high),
+            // There are two at least, so that no index can panic.
+            _ => knots.last_chunk().map_or((self.last, self.last), |&[low, high]| (low, high)),
+        }
     }
 
-    /// Index of the knot below `speed` > 0, so that there is one above.
+    /// Velocity and distance at knot `index`, the last but one at most, and the slope from there on \[s\].
     #[inline]
-    fn index(&self, speed: f64) -> usize {
-        ((speed * self.per_spacing) as u32 as usize).min(self.knots.len() - 2)
-    }
-
-    /// Distance and slope \[s\] at knot `index`, the last but one at most.
-    #[inline]
-    pub(crate) fn segment(&self, index: usize) -> (f64, f64, f64) {
-        let index = index.min(self.knots.len() - 2);
-        let (low, high) = (self.knot(index), self.knot(index + 1));
+    pub(crate) fn segment(&self, index: u32) -> (f64, f64, f64) {
+        let (low, high) = self.pair(index as usize);
         (low.velocity, low.distance, (high.distance - low.distance) * self.per_spacing)
     }
 
@@ -124,7 +124,7 @@ impl<'a> Curve<'a> {
             return (0.0, 0.0);
         }
         if speed <= self.last_velocity() {
-            let (velocity, distance, slope) = self.segment(self.index(speed));
+            let (velocity, distance, slope) = self.segment((speed * self.per_spacing) as u32);
             (distance + slope * (speed - velocity), slope)
         } else {
             (f64::INFINITY, f64::INFINITY)
@@ -137,39 +137,58 @@ impl<'a> Curve<'a> {
     /// right step or a neighbour of it. Within a step the knots are halved ⌈log₂ subdivisions⌉ times.
     #[inline]
     pub(crate) fn max_speed(&self, distance: f64) -> f64 {
-        let last = self.knot(self.knots.len() - 1);
         if !(distance > 0.0) {
             return 0.0;
         }
-        if distance >= last.distance {
-            return last.velocity;
+        if distance >= self.last.distance {
+            return self.last.velocity;
         }
-        let (mut low, mut high) = self.step_around(distance);
+        let step = self.step_below(distance);
+        if self.subdivisions == 1 {
+            self.speed_between(step, distance)
+        } else {
+            self.speed_between(self.knot_below(step * self.subdivisions, distance), distance)
+        }
+    }
+
+    /// Speed by interpolation from knot `index`, the last one at no more than `distance`.
+    #[inline]
+    fn speed_between(&self, index: usize, distance: f64) -> f64 {
+        let (below, above) = self.pair(index);
+        let share = (distance - below.distance) / (above.distance - below.distance);
+        smaller((f64::from(index as u32) + share) * self.spacing, above.velocity)
+    }
+
+    /// The last braking step at no more than `distance`, which is less than the last knot's.
+    #[inline]
+    fn step_below(&self, distance: f64) -> usize {
+        if distance < self.parabola.first {
+            return 0;
+        }
+        let guess = (self.parabola.steps_beyond_the_first(distance) as u32 as usize).min(self.steps - 1) + 1;
+        let knots = self.knots();
+        let is_within =
+            |step: usize| knots.get(step * self.subdivisions).is_some_and(|k| k.distance <= distance);
+        if !is_within(guess) {
+            guess - 1
+        } else if guess < self.steps && is_within(guess + 1) {
+            guess + 1
+        } else {
+            guess
+        }
+    }
+
+    /// The last knot at no more than `distance`, less than the last knot's, within the braking step from knot `low` on.
+    #[inline]
+    fn knot_below(&self, mut low: usize, distance: f64) -> usize {
+        let knots = self.knots();
+        let mut high = (low + self.subdivisions).min(knots.len() - 1);
         while high - low > 1 {
             let middle = low + (high - low) / 2;
-            let is_below = self.knot(middle).distance <= distance;
+            let is_below = knots.get(middle).is_some_and(|k| k.distance <= distance);
             low = if is_below { middle } else { low };
             high = if is_below { high } else { middle };
         }
-        let (below, above) = (self.knot(low), self.knot(high));
-        let share = (distance - below.distance) / (above.distance - below.distance);
-        ((low as f64 + share) * self.spacing).min(above.velocity)
-    }
-
-    /// The knots that bound the braking step in which `distance` lies, less than the last knot's.
-    #[inline]
-    fn step_around(&self, distance: f64) -> (usize, usize) {
-        let last = self.knots.len() - 1;
-        let mut step = 0;
-        if distance >= self.parabola.first {
-            step = 1 + (self.parabola.steps_beyond_the_first(distance) as u32 as usize).min(self.steps - 1);
-            if self.knot(step * self.subdivisions).distance > distance {
-                step -= 1;
-            } else if step < self.steps && self.knot((step + 1) * self.subdivisions).distance <= distance {
-                step += 1;
-            }
-        }
-        let low = step * self.subdivisions;
-        (low, if step < self.steps { low + self.subdivisions } else { last })
+        low
     }
 }

@@ -1,4 +1,4 @@
-//! The one function that `core` lacks.
+//! The one function that `core` lacks, and one that costs less than its own.
 
 /// Square root, correctly rounded; NaN below zero.
 #[cfg(feature = "std")]
@@ -16,4 +16,10 @@ pub(crate) fn sqrt(x: f64) -> f64 {
 #[cfg(not(any(feature = "std", feature = "libm")))]
 pub(crate) fn sqrt(x: f64) -> f64 {
     x
+}
+
+/// `f64::min` in one instruction; a NaN `b` stays.
+#[inline]
+pub(crate) fn smaller(a: f64, b: f64) -> f64 {
+    if a < b { a } else { b }
 }

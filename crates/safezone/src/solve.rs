@@ -81,7 +81,7 @@ impl Approach<'_> {
             let (velocity, sum, slope) = self.braking.knot(line, n);
             return velocity + (rest - sum) / slope;
         };
-        let (velocity, distance, slope) = curve.segment(n as u32 as usize);
+        let (velocity, distance, slope) = curve.segment(n as u32);
         let sum = line.gain * velocity + distance;
         // From beyond the other limit there is more room than the table knows distances for.
         (velocity + (rest - sum) / (line.gain + slope)).min(curve.last_velocity())
