@@ -1,6 +1,6 @@
 //! Limits that the interior of a step crosses although both its ends keep them.
 
-use crate::math::sqrt;
+use crate::math::{larger, smaller, sqrt};
 use crate::side::Turning;
 use crate::solve::Approach;
 
@@ -19,14 +19,14 @@ impl Approach<'_> {
     /// [`Timing::Fastest`](jbtg::Timing) a step that changes the velocity's sign starts the more slowly the larger it
     /// is, so that it turns later than a step to zero.
     #[inline]
-    pub(crate) fn min_velocity(&self) -> f64 {
+    pub(crate) fn min_velocity(self) -> f64 {
         let (braking, lowest) = (self.braking, self.reachable.min);
         let turns_late = self.velocity > 0.0 && !braking.stretched;
         if !turns_late && braking.reverse == 0.0 || lowest >= self.brake {
             return lowest;
         }
         let kept = braking.limit - 0.5 * braking.guard;
-        let farthest = self.position + self.velocity.max(0.0) * braking.period + braking.overshoot;
+        let farthest = self.position + larger(self.velocity, 0.0) * braking.period + braking.overshoot;
         if farthest <= kept {
             lowest
         } else if turns_late {
@@ -41,7 +41,8 @@ impl Approach<'_> {
     ///
     /// The reversal is over within a twentieth of the ramp and goes at most `reverse` per velocity change beyond motion
     /// at the first velocity. After it a larger change lies pointwise below a smaller one.
-    fn least_reversing(&self, kept: f64) -> f64 {
+    #[inline(never)]
+    fn least_reversing(self, kept: f64) -> f64 {
         let braking = self.braking;
         let needed = match (self.is_outside(), self.velocity > 0.0) {
             (true, true) => 0.0,
@@ -49,10 +50,10 @@ impl Approach<'_> {
             (true, false) => braking.overshoot,
             (false, _) => 1e-13 * braking.width,
         };
-        let room = (kept - self.position).max(braking.distance(self.velocity) + needed);
-        let reached = REVERSAL_SHARE * braking.period * self.velocity.max(0.0);
+        let room = larger(kept - self.position, braking.distance(self.velocity) + needed);
+        let reached = REVERSAL_SHARE * braking.period * larger(self.velocity, 0.0);
         let change = (room - reached) / braking.reverse;
-        (self.velocity - change).max(self.reachable.min).min(self.brake)
+        smaller(larger(self.velocity - change, self.reachable.min), self.brake)
     }
 
     /// Least velocity whose step turns before `kept`, or no later than braking at once, where `velocity` > 0 and the
@@ -62,18 +63,19 @@ impl Approach<'_> {
     /// cruise; from there on the way to the turning point is the same for all. So the admissible changes are those up to the
     /// one at which the turning point, as it advances, meets what is allowed. If braking itself has a cruise no
     /// turning point advances.
-    fn least_turning(&self, kept: f64) -> f64 {
+    #[inline(never)]
+    fn least_turning(self, kept: f64) -> f64 {
         let (braking, lowest) = (self.braking, self.reachable.min);
         if self.velocity >= braking.brake.ramps_only {
             return lowest;
         }
-        let travel = (kept - self.position).max(braking.distance(self.velocity));
+        let travel = larger(kept - self.position, braking.distance(self.velocity));
         let turning = &braking.turning;
         // A·T²-like scale: every turning point is a multiple of it that depends on where in the pulse it lies.
         let scale = self.velocity * sqrt(self.velocity * turning.rising_per_acceleration);
         let change = self.velocity * turning.change(travel / scale);
         if change < braking.brake.ramps_only {
-            (self.velocity - change).max(lowest).min(self.brake)
+            smaller(larger(self.velocity - change, lowest), self.brake)
         } else {
             lowest
         }

@@ -2,7 +2,7 @@
 
 use jbtg::{Direction, Planner, Timing};
 
-use crate::math::sqrt;
+use crate::math::{larger, sqrt};
 
 /// Least duration of a ramp as a share of the largest step's, as `jbtg` keeps it.
 const MIN_RAMP_SHARE: f64 = 1e-6;
@@ -89,7 +89,7 @@ impl Lag {
 
     #[inline]
     fn ramp_share(&self, change: f64) -> f64 {
-        sqrt(change * self.per_ramps_only).max(MIN_RAMP_SHARE)
+        larger(sqrt(change * self.per_ramps_only), MIN_RAMP_SHARE)
     }
 }
 

@@ -1,9 +1,9 @@
 //! One position limit, in coordinates in which it is the upper one.
 
-use jbtg::{Direction, Interval, Planner, Timing};
+use jbtg::{Direction, Planner, Timing};
 
 use crate::lag::Lag;
-use crate::math::sqrt;
+use crate::math::{larger, smaller, sqrt};
 
 /// A position limit of a joint.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -18,8 +18,6 @@ pub enum Side {
 /// the limit and braking makes velocities smaller.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Braking {
-    /// +1 for the upper limit, −1 for the lower one.
-    pub(crate) sign: f64,
     /// The position limit, mirrored [rad or m].
     pub(crate) limit: f64,
     /// Velocity that one period takes away, Δ [rad/s or m/s].
@@ -32,7 +30,7 @@ pub(crate) struct Braking {
     /// 2/(Δ·T) [1 per rad or m].
     growth: f64,
     /// Full braking steps from the largest velocity.
-    most_steps: f64,
+    pub(crate) most_steps: f64,
     /// Lag of steps away from the limit: braking.
     pub(crate) brake: Lag,
     /// Lag of steps towards the limit.
@@ -96,9 +94,9 @@ pub(crate) struct Turning {
 
 impl Braking {
     pub(crate) fn new(planner: &Planner, side: Side) -> Self {
-        let (sign, away, towards) = match side {
-            Side::Upper => (1.0, Direction::Decreasing, Direction::Increasing),
-            Side::Lower => (-1.0, Direction::Increasing, Direction::Decreasing),
+        let (away, towards) = match side {
+            Side::Upper => (Direction::Decreasing, Direction::Increasing),
+            Side::Lower => (Direction::Increasing, Direction::Decreasing),
         };
         let position = planner.limits().position();
         let (limit, velocity) = match side {
@@ -137,7 +135,6 @@ impl Braking {
             rising_per_acceleration: 0.5 * up * (up + down) / authority.ramps_only,
         };
         let mut braking = Self {
-            sign,
             limit,
             step,
             per_step: 1.0 / step,
@@ -182,10 +179,10 @@ impl Braking {
             return 0.0;
         }
         let n = self.full_steps(velocity);
-        let r = (velocity - n * self.step).max(0.0);
+        let r = larger(velocity - n * self.step, 0.0);
         n * (0.5 * (n - 1.0) * self.step * self.period + self.last_step + self.period * r)
             + self.brake.at(r)
-            + self.reverse * velocity.min(self.step)
+            + self.reverse * smaller(velocity, self.step)
     }
 
     /// Derivative of [`Braking::distance`] \[s\].
@@ -195,7 +192,7 @@ impl Braking {
             return 0.0;
         }
         let n = self.full_steps(velocity);
-        n * self.period + self.brake.slope_at((velocity - n * self.step).max(0.0))
+        n * self.period + self.brake.slope_at(larger(velocity - n * self.step, 0.0))
     }
 
     /// Braking steps that take Δ in full, from `velocity` ≥ 0 on.
@@ -204,13 +201,12 @@ impl Braking {
         (velocity * self.per_step) as i64 as f64
     }
 
-    /// The last knot n at which `line`'s displacement and the distance together are within `rest` > 0, but for rounding; at
-    /// most the one below the velocity limit. Exact with [`Timing::Stretched`].
+    /// Braking steps, the last one in part, up to which `line`'s displacement and the distance together are within `rest` > 0,
+    /// but for rounding. Exact with [`Timing::Stretched`].
     #[inline]
     pub(crate) fn steps_within(&self, line: &Line, rest: f64) -> f64 {
-        let beyond = (rest - self.overshoot).max(0.0) * self.growth;
-        let steps = sqrt(line.vertex_squared + beyond) - line.vertex;
-        (steps.min(self.most_steps) as i64) as f64
+        let beyond = larger(rest - self.overshoot, 0.0) * self.growth;
+        sqrt(line.vertex_squared + beyond) - line.vertex
     }
 
     /// Knot `n` of `line`'s displacement and the distance together: its velocity, their sum, and its slope from there on
@@ -255,11 +251,5 @@ impl Braking {
     pub(crate) fn displacement_slope(&self, v1: f64, v2: f64) -> f64 {
         let lag = if v2 >= v1 { self.climb.slope_at(v2 - v1) } else { self.brake.slope_at(v1 - v2) };
         self.period - lag
-    }
-
-    /// An interval of velocities or positions, mirrored.
-    #[inline]
-    pub(crate) fn mirrored(&self, interval: Interval) -> Interval {
-        if self.sign > 0.0 { interval } else { interval.mirrored() }
     }
 }

@@ -3,6 +3,7 @@
 use jbtg::Interval;
 
 use crate::curve::Curve;
+use crate::math::{larger, smaller};
 use crate::side::{Braking, Line};
 
 /// Most Newton steps; each that leaves its bracket halves it, so that these suffice for the whole of double precision.
@@ -31,15 +32,15 @@ impl Approach<'_> {
     /// The travel until rest, of the step and of braking after it, grows with the velocity, so the admissible velocities
     /// form an interval from below.
     #[inline]
-    pub(crate) fn max_velocity(&self) -> f64 {
+    pub(crate) fn max_velocity(self) -> f64 {
         let braking = self.braking;
-        let room = braking.limit - braking.guard - self.position;
         let highest = self.reachable.max;
         if braking.is_far(self.position) && self.velocity <= braking.velocity {
             return highest;
         }
+        let room = braking.limit - braking.guard - self.position;
         let velocity = if braking.stretched { self.solve_stretched(room) } else { self.solve_fastest(room) };
-        velocity.max(self.brake).min(highest)
+        smaller(larger(velocity, self.brake), highest)
     }
 
     /// Stopping distance from `velocity` and its slope [rad or m, s].
@@ -59,7 +60,7 @@ impl Approach<'_> {
     /// between which two the solution is. An index that rounding puts off by one costs nothing, since neighbouring
     /// lines meet there.
     #[inline]
-    fn solve_stretched(&self, room: f64) -> f64 {
+    fn solve_stretched(self, room: f64) -> f64 {
         let (downwards, upwards) = (&self.braking.downwards, &self.braking.upwards);
         let velocity = self.solve_linear(downwards, room);
         if velocity > self.velocity && upwards.lag != downwards.lag {
@@ -71,26 +72,28 @@ impl Approach<'_> {
 
     /// The velocity at which the travel is `room`, if all steps were `line`'s.
     #[inline]
-    fn solve_linear(&self, line: &Line, room: f64) -> f64 {
+    fn solve_linear(self, line: &Line, room: f64) -> f64 {
         let rest = room - line.lag * self.velocity;
         if rest <= 0.0 {
             return rest * line.per_gain;
         }
-        let n = self.braking.steps_within(line, rest);
+        let steps = self.braking.steps_within(line, rest);
         let Some(curve) = self.table else {
-            let (velocity, sum, slope) = self.braking.knot(line, n);
+            let (velocity, sum, slope) =
+                self.braking.knot(line, smaller(whole_steps(steps), self.braking.most_steps));
             return velocity + (rest - sum) / slope;
         };
-        let (velocity, distance, slope) = curve.segment(n as u32);
+        let (velocity, distance, slope) = curve.segment(steps as u32);
         let sum = line.gain * velocity + distance;
         // From beyond the other limit there is more room than the table knows distances for.
-        (velocity + (rest - sum) / (line.gain + slope)).min(curve.last_velocity())
+        smaller(velocity + (rest - sum) / (line.gain + slope), curve.last_velocity())
     }
 
     /// The velocity at which the travel is `room`, by Newton steps within a bracket, from the safe side.
     ///
     /// They start where the travel would be `room` if every step had the largest one's mean lag.
-    fn solve_fastest(&self, room: f64) -> f64 {
+    #[inline(never)]
+    fn solve_fastest(self, room: f64) -> f64 {
         let travel = |velocity: f64| {
             let (distance, slope) = self.distance_and_slope(velocity);
             let step = self.braking.displacement(self.velocity, velocity);
@@ -126,7 +129,14 @@ impl Approach<'_> {
         low
     }
 
-    fn guess(&self, room: f64) -> f64 {
-        Approach { table: None, ..*self }.solve_stretched(room)
+    fn guess(self, room: f64) -> f64 {
+        Approach { table: None, ..self }.solve_stretched(room)
     }
+}
+
+/// Rounds `steps` > −0.5 down, the quick way; an integer may come out as the one below.
+#[inline]
+fn whole_steps(steps: f64) -> f64 {
+    const SHIFT: f64 = 1.5 / f64::EPSILON; // numbers of its size have no fraction
+    steps - 0.5 + SHIFT - SHIFT
 }

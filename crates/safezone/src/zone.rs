@@ -2,6 +2,7 @@
 
 use jbtg::{Interval, Planner};
 
+use crate::math::{larger, smaller};
 use crate::range::{RangeStatus, SafeRange};
 use crate::side::{Braking, Side};
 use crate::solve::Approach;
@@ -152,21 +153,21 @@ impl<'a> SafeZone<'a> {
         let brake = towards_zero(velocity, reachable);
         let upper = self.approach(Side::Upper, position, velocity, reachable, brake);
         let lower = self.approach(Side::Lower, position, velocity, reachable, brake);
-        let mut max = upper.max_velocity().min(-lower.min_velocity());
-        let mut min = upper.min_velocity().max(-lower.max_velocity());
+        let mut max = smaller(upper.max_velocity(), -lower.min_velocity());
+        let mut min = larger(upper.min_velocity(), -lower.max_velocity());
         let mut status = if is_slow { RangeStatus::Safe } else { RangeStatus::VelocityOutside };
         if max <= brake && upper.cannot_stop() || min >= brake && lower.cannot_stop() {
             status = RangeStatus::CannotStop;
         }
         if upper.is_outside() {
             status = RangeStatus::PositionOutside;
-            max = max.min(upper.way_back()).max(min);
+            max = larger(smaller(max, upper.way_back()), min);
         } else if lower.is_outside() {
             status = RangeStatus::PositionOutside;
-            min = min.max(-lower.way_back()).min(max);
+            min = smaller(larger(min, -lower.way_back()), max);
         }
         let narrowed = min > reachable.min || max < reachable.max;
-        SafeRange { min, max, brake: brake.max(min).min(max), narrowed, status }
+        SafeRange { min, max, brake: smaller(larger(brake, min), max), narrowed, status }
     }
 
     #[inline]
@@ -178,17 +179,17 @@ impl<'a> SafeZone<'a> {
         reachable: Interval,
         brake: f64,
     ) -> Approach<'_> {
-        let braking = match side {
-            Side::Upper => &self.upper,
-            Side::Lower => &self.lower,
-        };
-        Approach {
-            braking,
-            table: self.table.as_ref().map(|table| table.curve(side)),
-            position: braking.sign * position,
-            velocity: braking.sign * velocity,
-            reachable: braking.mirrored(reachable),
-            brake: braking.sign * brake,
+        let table = self.table.as_ref().map(|table| table.curve(side));
+        match side {
+            Side::Upper => Approach { braking: &self.upper, table, position, velocity, reachable, brake },
+            Side::Lower => Approach {
+                braking: &self.lower,
+                table,
+                position: -position,
+                velocity: -velocity,
+                reachable: reachable.mirrored(),
+                brake: -brake,
+            },
         }
     }
 
@@ -202,14 +203,16 @@ impl<'a> SafeZone<'a> {
 
 impl Approach<'_> {
     /// Whether the position is beyond the limit by more than rounding.
+    #[inline]
     pub(crate) fn is_outside(&self) -> bool {
         self.position > self.braking.limit + self.braking.tolerance
     }
 
     /// Whether braking at once, from inside, overruns the limit by more than rounding.
+    #[inline]
     fn cannot_stop(&self) -> bool {
-        let travel = self.braking.distance(self.velocity);
-        self.velocity > 0.0 && self.position + travel > self.braking.limit + self.braking.tolerance
+        let kept = self.braking.limit + self.braking.tolerance;
+        self.velocity > 0.0 && self.position + self.braking.distance(self.velocity) > kept
     }
 
     /// Greatest velocity from beyond the limit that still leads back: braking while it moves out, then half of what
@@ -219,17 +222,18 @@ impl Approach<'_> {
             self.brake
         } else {
             let slowest_return = 0.5 * self.braking.step;
-            (-slowest_return).max(self.reachable.min).min(self.reachable.max)
+            smaller(larger(-slowest_return, self.reachable.min), self.reachable.max)
         }
     }
 }
 
 /// The velocity nearest to zero that the braking policy steps to.
+#[inline]
 fn towards_zero(velocity: f64, reachable: Interval) -> f64 {
     if velocity > 0.0 {
-        reachable.min.max(0.0)
+        larger(reachable.min, 0.0)
     } else if velocity < 0.0 {
-        reachable.max.min(0.0)
+        smaller(reachable.max, 0.0)
     } else {
         0.0
     }
