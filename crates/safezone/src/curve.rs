@@ -143,29 +143,40 @@ impl<'a> Curve<'a> {
         if distance >= self.last.distance {
             return self.last.velocity;
         }
-        let step = self.step_below(distance);
-        if self.subdivisions == 1 {
-            self.speed_between(step, distance)
+        let guess = self.guess_of_step(distance);
+        if self.subdivisions > 1 {
+            let index = self.knot_below(self.step_below(guess, distance) * self.subdivisions, distance);
+            return self.speed_between(index, self.pair(index), distance);
+        }
+        let (below, above) = self.pair(guess);
+        if below.distance > distance {
+            self.speed_between(guess - 1, self.pair(guess - 1), distance)
+        } else if above.distance <= distance {
+            self.speed_between(guess + 1, self.pair(guess + 1), distance)
         } else {
-            self.speed_between(self.knot_below(step * self.subdivisions, distance), distance)
+            self.speed_between(guess, (below, above), distance)
         }
     }
 
-    /// Speed by interpolation from knot `index`, the last one at no more than `distance`.
+    /// Speed by interpolation between knot `index` and the next one.
     #[inline]
-    fn speed_between(&self, index: usize, distance: f64) -> f64 {
-        let (below, above) = self.pair(index);
+    fn speed_between(&self, index: usize, (below, above): (Knot, Knot), distance: f64) -> f64 {
         let share = (distance - below.distance) / (above.distance - below.distance);
         smaller((f64::from(index as u32) + share) * self.spacing, above.velocity)
     }
 
-    /// The last braking step at no more than `distance`, which is less than the last knot's.
+    /// The last braking step at no more than `distance`, or a neighbour of it; 0 only if it is that step.
     #[inline]
-    fn step_below(&self, distance: f64) -> usize {
+    fn guess_of_step(&self, distance: f64) -> usize {
         if distance < self.parabola.first {
             return 0;
         }
-        let guess = (self.parabola.steps_beyond_the_first(distance) as u32 as usize).min(self.steps - 1) + 1;
+        (self.parabola.steps_beyond_the_first(distance) as u32 as usize).min(self.steps - 1) + 1
+    }
+
+    /// The last braking step at no more than `distance`, which is less than the last knot's, from a guess of it.
+    #[inline]
+    fn step_below(&self, guess: usize, distance: f64) -> usize {
         let knots = self.knots();
         let is_within =
             |step: usize| knots.get(step * self.subdivisions).is_some_and(|k| k.distance <= distance);
