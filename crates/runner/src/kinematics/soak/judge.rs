@@ -35,7 +35,11 @@ pub(super) enum Trust {
     /// Nothing yet: the motion has just started, or new limits have just taken over.
     New,
     /// It was promised that every limit is kept for ever.
-    Promised,
+    Promised {
+        /// Whether the motion started with the zone's guard between where it can stop and the limit. Without it the
+        /// limit is kept but for the rounding of one braking manoeuvre, which the status tells once it is not small.
+        with_guard: bool,
+    },
     /// It is on a way back.
     Recovering(Recovery),
 }
@@ -50,13 +54,22 @@ impl Trust {
         range: &SafeRange,
     ) -> Result<Self, Fault> {
         match (self, range.status) {
-            (Self::Promised, RangeStatus::Safe) => Ok(self),
+            (Self::Promised { .. }, RangeStatus::Safe) => Ok(self),
             // From a start within the guard, far from 0, rounding may come to light on the way; the limit stays.
-            (Self::Promised, RangeStatus::CannotStop) if is_rounding(zone, (position, velocity)) => Ok(self),
-            (Self::Promised, _) => Err(Fault::Status),
+            (Self::Promised { .. }, RangeStatus::CannotStop)
+                if stops_within(zone, (position, velocity), 0.0) =>
+            {
+                Ok(self)
+            }
+            (Self::Promised { with_guard: false }, RangeStatus::CannotStop)
+                if stops_within(zone, (position, velocity), guard(zone)) =>
+            {
+                Ok(Self::Recovering(Recovery::from(zone, (position, velocity), range.status)))
+            }
+            (Self::Promised { .. }, _) => Err(Fault::Status),
             (Self::New | Self::Recovering(_), RangeStatus::Safe) => {
                 check_status(zone, (position, velocity), range.status)?;
-                Ok(Self::Promised)
+                Ok(Self::Promised { with_guard: stops_within(zone, (position, velocity), -guard(zone)) })
             }
             (Self::New, status) => {
                 check_status(zone, (position, velocity), status)?;
@@ -90,11 +103,17 @@ impl Recovery {
     }
 }
 
-/// Whether braking at once stops no further out than what counts as rounding.
-fn is_rounding(zone: &SafeZone<'_>, (position, velocity): (f64, f64)) -> bool {
+/// Whether braking at once stops no further out than what counts as rounding, and `slack` [rad or m].
+fn stops_within(zone: &SafeZone<'_>, (position, velocity): (f64, f64), slack: f64) -> bool {
     let limits = zone.planner().limits().position();
     let stop = position + velocity.signum() * zone.stopping_distance(velocity);
-    limits.max.max(stop) - limits.min.min(stop) <= (1.0 + MOST_EXCESS) * limits.width()
+    let allowed = MOST_EXCESS * limits.width() + slack;
+    stop - limits.max <= allowed && limits.min - stop <= allowed
+}
+
+/// The larger guard of both limits [rad or m].
+fn guard(zone: &SafeZone<'_>) -> f64 {
+    zone.guard(Side::Upper).max(zone.guard(Side::Lower))
 }
 
 /// Whether the status says what is so, give or take the rounding that a zone allows for.
@@ -107,7 +126,7 @@ fn check_status(
     let rounding = MOST_EXCESS * interval.width();
     let stop = position + velocity.signum() * zone.stopping_distance(velocity);
     let beyond = |p: f64, slack: f64| p > interval.max + slack || p < interval.min - slack;
-    let guard = zone.guard(Side::Upper).max(zone.guard(Side::Lower));
+    let guard = guard(zone);
     let is_faithful = match status {
         RangeStatus::Safe => !beyond(position, rounding) && !beyond(stop, rounding),
         RangeStatus::VelocityOutside => !beyond(position, rounding),
@@ -151,7 +170,7 @@ pub(super) fn excess(zone: &SafeZone<'_>, extrema: &Extrema, trust: &Trust) -> E
     let limits = zone.planner().limits();
     let (position, velocity) = match trust {
         Trust::Recovering(recovery) => (recovery.position, recovery.velocity),
-        Trust::New | Trust::Promised => (limits.position(), limits.velocity()),
+        Trust::New | Trust::Promised { .. } => (limits.position(), limits.velocity()),
     };
     Excess {
         position: beyond(extrema.position, position),
