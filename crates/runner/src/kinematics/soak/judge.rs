@@ -1,6 +1,6 @@
 //! Judges one step: what its range promised against what the step does, by exact extrema.
 
-use jbtg::{Extrema, Interval, RampError};
+use jbtg::{Direction, Extrema, Interval, RampError};
 use safezone::{RangeStatus, SafeRange, SafeZone, Side};
 
 use super::MOST_EXCESS;
@@ -21,8 +21,8 @@ pub(super) enum Fault {
     Status,
 }
 
-/// What holds for the steps of a motion that started where nothing could be promised: it goes no further out than
-/// braking at once would have gone, and no faster.
+/// What holds for the steps of a motion that started where nothing could be promised, or all but rounding: it goes no
+/// further out than braking at once would have gone, its guard on top, and no faster.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Recovery {
     position: Interval,
@@ -35,11 +35,7 @@ pub(super) enum Trust {
     /// Nothing yet: the motion has just started, or new limits have just taken over.
     New,
     /// It was promised that every limit is kept for ever.
-    Promised {
-        /// Whether the motion started with the zone's guard between where it can stop and the limit. Without it the
-        /// limit is kept but for the rounding of one braking manoeuvre, which the status tells once it is not small.
-        with_guard: bool,
-    },
+    Promised,
     /// It is on a way back.
     Recovering(Recovery),
 }
@@ -54,22 +50,17 @@ impl Trust {
         range: &SafeRange,
     ) -> Result<Self, Fault> {
         match (self, range.status) {
-            (Self::Promised { .. }, RangeStatus::Safe) => Ok(self),
+            (Self::Promised, RangeStatus::Safe) => Ok(self),
             // From a start within the guard, far from 0, rounding may come to light on the way; the limit stays.
-            (Self::Promised { .. }, RangeStatus::CannotStop)
-                if stops_within(zone, (position, velocity), 0.0) =>
-            {
-                Ok(self)
-            }
-            (Self::Promised { with_guard: false }, RangeStatus::CannotStop)
-                if stops_within(zone, (position, velocity), guard(zone)) =>
-            {
-                Ok(Self::Recovering(Recovery::from(zone, (position, velocity), range.status)))
-            }
-            (Self::Promised { .. }, _) => Err(Fault::Status),
+            (Self::Promised, RangeStatus::CannotStop) if is_rounding(zone, (position, velocity)) => Ok(self),
+            (Self::Promised, _) => Err(Fault::Status),
             (Self::New | Self::Recovering(_), RangeStatus::Safe) => {
                 check_status(zone, (position, velocity), range.status)?;
-                Ok(Self::Promised { with_guard: stops_within(zone, (position, velocity), -guard(zone)) })
+                if keeps_guard(zone, (position, velocity)) || is_exact(zone) {
+                    Ok(Self::Promised)
+                } else {
+                    Ok(Self::Recovering(Recovery::from(zone, (position, velocity), range.status)))
+                }
             }
             (Self::New, status) => {
                 check_status(zone, (position, velocity), status)?;
@@ -103,17 +94,30 @@ impl Recovery {
     }
 }
 
-/// Whether braking at once stops no further out than what counts as rounding, and `slack` [rad or m].
-fn stops_within(zone: &SafeZone<'_>, (position, velocity): (f64, f64), slack: f64) -> bool {
+/// Whether braking at once stops with the zone's guard between the joint and its limits.
+fn keeps_guard(zone: &SafeZone<'_>, (position, velocity): (f64, f64)) -> bool {
     let limits = zone.planner().limits().position();
     let stop = position + velocity.signum() * zone.stopping_distance(velocity);
-    let allowed = MOST_EXCESS * limits.width() + slack;
-    stop - limits.max <= allowed && limits.min - stop <= allowed
+    stop <= limits.max - zone.guard(Side::Upper) && stop >= limits.min + zone.guard(Side::Lower)
 }
 
-/// The larger guard of both limits [rad or m].
-fn guard(zone: &SafeZone<'_>) -> f64 {
-    zone.guard(Side::Upper).max(zone.guard(Side::Lower))
+/// Whether the rounding of a whole braking manoeuvre is below half of [`MOST_EXCESS`]. It is not where braking takes
+/// thousands of periods or the interval lies thousands of its widths away from 0, so that an ulp of the position alone
+/// may exceed the bar: there a start within the guard is promised the limit but for that rounding.
+fn is_exact(zone: &SafeZone<'_>) -> bool {
+    let rounding = |side, direction| {
+        let authority = zone.planner().authority(direction);
+        zone.guard(side) - 2.0 * authority.reverse_travel * authority.velocity_change
+    };
+    let most = rounding(Side::Upper, Direction::Decreasing).max(rounding(Side::Lower, Direction::Increasing));
+    most <= 0.5 * MOST_EXCESS * zone.planner().limits().position().width()
+}
+
+/// Whether braking at once stops no further out than what counts as rounding.
+fn is_rounding(zone: &SafeZone<'_>, (position, velocity): (f64, f64)) -> bool {
+    let limits = zone.planner().limits().position();
+    let stop = position + velocity.signum() * zone.stopping_distance(velocity);
+    limits.max.max(stop) - limits.min.min(stop) <= (1.0 + MOST_EXCESS) * limits.width()
 }
 
 /// Whether the status says what is so, give or take the rounding that a zone allows for.
@@ -126,7 +130,7 @@ fn check_status(
     let rounding = MOST_EXCESS * interval.width();
     let stop = position + velocity.signum() * zone.stopping_distance(velocity);
     let beyond = |p: f64, slack: f64| p > interval.max + slack || p < interval.min - slack;
-    let guard = guard(zone);
+    let guard = zone.guard(Side::Upper).max(zone.guard(Side::Lower));
     let is_faithful = match status {
         RangeStatus::Safe => !beyond(position, rounding) && !beyond(stop, rounding),
         RangeStatus::VelocityOutside => !beyond(position, rounding),
@@ -170,7 +174,7 @@ pub(super) fn excess(zone: &SafeZone<'_>, extrema: &Extrema, trust: &Trust) -> E
     let limits = zone.planner().limits();
     let (position, velocity) = match trust {
         Trust::Recovering(recovery) => (recovery.position, recovery.velocity),
-        Trust::New | Trust::Promised { .. } => (limits.position(), limits.velocity()),
+        Trust::New | Trust::Promised => (limits.position(), limits.velocity()),
     };
     Excess {
         position: beyond(extrema.position, position),
