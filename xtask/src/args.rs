@@ -8,6 +8,12 @@ use std::path::PathBuf;
 #[derive(Debug, PartialEq)]
 pub(crate) struct UsageError(String);
 
+impl UsageError {
+    pub(crate) fn new(message: String) -> Self {
+        Self(message)
+    }
+}
+
 impl std::fmt::Display for UsageError {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
         f.write_str(&self.0)
@@ -213,7 +219,8 @@ fn find_command(name: &str) -> Result<&'static Command, UsageError> {
 }
 
 /// "unknown WHAT `lft`; did you mean `lift`? WHAT is one of …".
-fn unknown(what: &str, text: &str, names: &[&str]) -> String {
-    let hint = nearest(text, names).map(|near| format!("; did you mean `{near}`?")).unwrap_or_default();
+pub(crate) fn unknown<N: AsRef<str>>(what: &str, text: &str, names: &[N]) -> String {
+    let names: Vec<&str> = names.iter().map(AsRef::as_ref).collect();
+    let hint = nearest(text, &names).map(|near| format!("; did you mean `{near}`?")).unwrap_or_default();
     format!("unknown {what} `{text}`{hint} (one of: {})", names.join(", "))
 }

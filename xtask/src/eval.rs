@@ -1,6 +1,7 @@
 //! `eval`: evaluate a trained policy.
 
 use crate::flags::Eval;
+use crate::names;
 use crate::runner::{Binary, Call};
 use std::process::ExitCode;
 
@@ -15,6 +16,7 @@ impl Eval {
     }
 
     pub(crate) fn run(self) -> anyhow::Result<ExitCode> {
+        names::check_run(&self.run)?;
         self.call().run()
     }
 }

@@ -1,10 +1,16 @@
 //! `figures` and `report`: a run to be looked at.
 
+use crate::args::UsageError;
 use crate::flags::{Figures, Report};
+use crate::names;
 use crate::runner::{Binary, Call};
 use std::process::ExitCode;
 
 impl Figures {
+    fn check_names(&self) -> Result<(), UsageError> {
+        self.runs.iter().try_for_each(|run| names::check_run(run))
+    }
+
     pub(crate) fn call(&self) -> Call {
         self.call_of("figures")
     }
@@ -19,6 +25,7 @@ impl Figures {
     }
 
     pub(crate) fn run(self) -> anyhow::Result<ExitCode> {
+        self.check_names()?;
         self.call().run()
     }
 }
@@ -29,6 +36,7 @@ impl Report {
     }
 
     pub(crate) fn run(self) -> anyhow::Result<ExitCode> {
+        self.figures.check_names()?;
         self.call().run()
     }
 }

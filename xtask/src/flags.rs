@@ -52,6 +52,8 @@ pub(crate) enum Invocation {
     Eval(Eval),
     Figures(Figures),
     Report(Report),
+    Runs(Runs),
+    Doctor,
     Profile(Profile),
     Zone(Zone),
     Soak(Soak),
@@ -112,6 +114,11 @@ pub(crate) struct Figures {
 pub(crate) struct Report {
     pub(crate) figures: Figures,
     pub(crate) open: bool,
+}
+
+#[derive(Debug, PartialEq)]
+pub(crate) struct Runs {
+    pub(crate) json: bool,
 }
 
 #[derive(Debug, PartialEq)]
@@ -242,6 +249,8 @@ impl Invocation {
                 }
                 Self::Report(report)
             }
+            "runs" => Self::Runs(Runs { json: parsed.switch("json") }),
+            "doctor" => Self::Doctor,
             "profile" => Self::Profile(Profile {
                 v1: parsed.number("v1")?,
                 v2: parsed.number("v2")?,

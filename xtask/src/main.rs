@@ -6,6 +6,7 @@
 #![forbid(unsafe_code)]
 
 mod args;
+mod doctor;
 mod dynamics;
 mod eval;
 mod figures;
@@ -13,9 +14,11 @@ mod flags;
 mod footprint;
 mod help;
 mod load_chart;
+mod names;
 mod profile;
 mod record;
 mod runner;
+mod runs;
 mod soak;
 mod suggest;
 mod tables;
@@ -24,6 +27,7 @@ mod track;
 mod train;
 mod zone;
 
+use args::UsageError;
 use flags::Invocation;
 use std::io::Write;
 use std::path::{Path, PathBuf};
@@ -38,7 +42,7 @@ fn main() -> ExitCode {
     match words.and_then(|words| Invocation::parse(words).map_err(|error| error.to_string())) {
         Ok(invocation) => dispatch(invocation).unwrap_or_else(|error| {
             complain(format_args!("{error:#}"));
-            ExitCode::FAILURE
+            if error.is::<UsageError>() { ExitCode::from(USAGE) } else { ExitCode::FAILURE }
         }),
         Err(error) => {
             complain(error);
@@ -57,6 +61,8 @@ fn dispatch(invocation: Invocation) -> anyhow::Result<ExitCode> {
         Invocation::Eval(flags) => flags.run(),
         Invocation::Figures(flags) => flags.run(),
         Invocation::Report(flags) => flags.run(),
+        Invocation::Runs(flags) => flags.run(),
+        Invocation::Doctor => doctor::run(),
         Invocation::Profile(flags) => flags.run(),
         Invocation::Zone(flags) => flags.run(),
         Invocation::Soak(flags) => flags.run(),

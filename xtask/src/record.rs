@@ -1,6 +1,7 @@
 //! `record`: actions of a trained policy as a file.
 
 use crate::flags::Record;
+use crate::names;
 use crate::runner::{Binary, Call};
 use std::process::ExitCode;
 
@@ -16,6 +17,7 @@ impl Record {
     }
 
     pub(crate) fn run(self) -> anyhow::Result<ExitCode> {
+        names::check_run(&self.run)?;
         self.call().run()
     }
 }

@@ -1,6 +1,7 @@
 //! `track`, `tune`, `ablation`: control laws against scenarios.
 
 use crate::flags::{Ablation, Track, Tune};
+use crate::names;
 use crate::runner::{Binary, Call};
 use std::process::ExitCode;
 
@@ -15,6 +16,7 @@ impl Track {
     }
 
     pub(crate) fn run(self) -> anyhow::Result<ExitCode> {
+        names::check_scenario(&self.scenario)?;
         self.call().run()
     }
 }

@@ -1,6 +1,7 @@
 //! `train`: train one stage, or all of them.
 
 use crate::flags::{Stages, Train};
+use crate::names;
 use crate::runner::{Binary, Call};
 use std::process::ExitCode;
 
@@ -21,6 +22,10 @@ impl Train {
     }
 
     pub(crate) fn run(self) -> anyhow::Result<ExitCode> {
+        // `--all --resume` may begin a run.
+        if let (true, Stages::One(_), Some(run)) = (self.resume, &self.stages, &self.run) {
+            names::check_run(run)?;
+        }
         self.call().run()
     }
 }

@@ -63,3 +63,56 @@ fn no_command_at_all_prints_the_help() {
     assert!(output.status.success() && output.stderr.is_empty());
     assert!(String::from_utf8(output.stdout).unwrap().contains("train"));
 }
+
+/// Plants a root with the folders `runs/first` and `runs/second` and a scenario, and gives what is said there.
+#[expect(clippy::unwrap_used, reason = "a helper of tests: a broken fixture must fail them")]
+fn refused_in_a_root_with_runs(name: &str, words: &[&str]) -> String {
+    let root = PathBuf::from(env!("CARGO_TARGET_TMPDIR")).join(name);
+    for folder in ["runs/first", "runs/second", "assets/scenarios"] {
+        std::fs::create_dir_all(root.join(folder)).unwrap();
+    }
+    std::fs::write(root.join("assets/scenarios/chirp.ron"), "").unwrap();
+    let (_, output, _) = run(name, "echo started", words);
+    let errors = String::from_utf8(output.stderr).unwrap();
+    assert_eq!((output.status.code(), output.stdout.len()), (Some(2), 0), "{errors}");
+    assert_eq!(errors.lines().count(), 1, "{errors}");
+    errors
+}
+
+#[test]
+fn a_run_that_is_not_there_is_answered_with_the_nearest_before_anything_is_built() {
+    for words in [
+        &["eval", "--run", "frist", "--stage", "purple"][..],
+        &["figures", "--run", "second", "--run", "frist"],
+        &["report", "--run", "frist"],
+        &["train", "--stage", "purple", "--run", "frist", "--resume"],
+        &["record", "--run", "frist", "--stage", "purple", "--episode", "0", "--out", "x"],
+    ] {
+        let errors = refused_in_a_root_with_runs("unknown_run", words);
+        assert!(errors.contains("did you mean `first`? (one of: first, second)"), "{errors}");
+    }
+}
+
+#[test]
+fn a_scenario_that_is_not_there_is_answered_with_the_nearest() {
+    let errors = refused_in_a_root_with_runs("unknown_scenario", &["track", "--scenario", "chrip"]);
+    assert!(errors.contains("did you mean `chirp`? (one of: chirp, all)"), "{errors}");
+}
+
+#[test]
+fn where_there_is_no_run_the_way_to_the_first_is_said() {
+    let (_, output, _) = run("no_run", "echo started", &["report", "--run", "a"]);
+    let errors = String::from_utf8(output.stderr).unwrap();
+    assert!(errors.contains("cargo xtask train --stage purple --run a"), "{errors}");
+}
+
+#[test]
+fn a_machine_without_a_compiler_is_told_what_to_get() {
+    let output = Command::new(env!("CARGO_BIN_EXE_xtask")).arg("doctor").env("PATH", "").output().unwrap();
+    let text = String::from_utf8(output.stdout).unwrap();
+    assert_eq!(output.status.code(), Some(1), "{text}");
+    for part in ["MISSING  Rust", "https://rustup.rs", "MISSING  C compiler", "build-essential", "2 missing"]
+    {
+        assert!(text.contains(part), "no '{part}' in: {text}");
+    }
+}

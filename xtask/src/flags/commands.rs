@@ -102,6 +102,18 @@ pub(crate) const COMMANDS: &[Command] = &[
         example: "cargo xtask report --run first --open",
     },
     Command {
+        name: "runs",
+        summary: "List the runs: stage, seed, result, age, and the command that goes on with each",
+        flags: &[switch("json", "print JSON")],
+        example: "cargo xtask runs",
+    },
+    Command {
+        name: "doctor",
+        summary: "Say what is missing on this machine, what for, and how to get it",
+        flags: &[],
+        example: "cargo xtask doctor",
+    },
+    Command {
         name: "profile",
         summary: "Plan one jerk-bounded velocity change and print it as samples",
         flags: &[

@@ -21,6 +21,7 @@ fn cargo_line(line: &str) -> String {
         Invocation::Eval(flags) => flags.call(),
         Invocation::Figures(flags) => flags.call(),
         Invocation::Report(flags) => flags.call(),
+        Invocation::Runs(flags) => flags.call(),
         Invocation::Profile(flags) => flags.call(),
         Invocation::Zone(flags) => flags.call(),
         Invocation::Soak(flags) => flags.call(),
@@ -30,7 +31,9 @@ fn cargo_line(line: &str) -> String {
         Invocation::Tune(flags) => flags.call(),
         Invocation::Ablation(flags) => flags.call(),
         Invocation::Record(flags) => flags.call(),
-        Invocation::Help(_) | Invocation::Footprint | Invocation::Tidy => panic!("{line} runs no child"),
+        Invocation::Help(_) | Invocation::Doctor | Invocation::Footprint | Invocation::Tidy => {
+            panic!("{line} runs no child")
+        }
     };
     let words = call.cargo_arguments();
     words.iter().map(|word: &OsString| word.to_str().unwrap()).collect::<Vec<_>>().join(" ")
@@ -57,6 +60,7 @@ fn flags_reach_the_child_in_one_form() {
             "figures --run b --stage purple --run=a --episodes 9",
             format!("{RUNNER} figures --run b --run a --stage purple --episodes 9"),
         ),
+        ("runs --json", format!("{KINEMATICS} runs --json")),
         ("report --open --run a", format!("{RUNNER} report --run a --open")),
         (
             "profile --v1=-0.1 --v2 -1e-2 --dt .05 --vmax 0.15 --amax 1 --jmax 1e2 --timing fastest --hz 500",

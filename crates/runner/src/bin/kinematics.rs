@@ -1,5 +1,5 @@
 //! Commands about motion alone: `tables`, `profile`, `zone`, `soak`, `dynamics`, `load-chart`, `track`, `tune`,
-//! `ablation`. Builds without the learner.
+//! `ablation`; and `runs`, which lists what was trained. Builds without the learner.
 #![forbid(unsafe_code)]
 
 use std::path::{Path, PathBuf};
@@ -13,12 +13,13 @@ use runner::command;
 use runner::config::{self, ConfigSpec};
 use runner::kinematics::soak::{self, SoakRequest};
 use runner::kinematics::{
-    self, AblationRequest, LoadChartFiles, ProfileRequest, Tables, TrackRequest, TuneRequest, ZoneFormat,
+    self, AblationRequest, LoadChartFiles, ProfileRequest, RunsFormat, Tables, TrackRequest, TuneRequest,
+    ZoneFormat,
 };
 use runner::track::setup::Law;
 
 /// Every command.
-const COMMANDS: &str = "tables, zone, profile, soak, dynamics, load-chart, track, tune and ablation";
+const COMMANDS: &str = "tables, zone, profile, soak, dynamics, load-chart, track, tune, ablation and runs";
 
 fn main() -> ExitCode {
     command::run(dispatch)
@@ -41,6 +42,11 @@ fn dispatch(command: &str, words: Vec<String>) -> Result<String> {
             let format = if arguments.switch("json")? { ZoneFormat::Json } else { ZoneFormat::Text };
             arguments.finish()?;
             kinematics::zone(&config, &joint, position, velocity, format)
+        }
+        "runs" => {
+            let format = if arguments.switch("json")? { RunsFormat::Json } else { RunsFormat::Text };
+            arguments.finish()?;
+            kinematics::runs(format)
         }
         "profile" => {
             let request = ProfileRequest {
@@ -115,7 +121,7 @@ fn dispatch(command: &str, words: Vec<String>) -> Result<String> {
 fn switches(command: &str) -> &'static [&'static str] {
     match command {
         "tables" => &["check"],
-        "zone" => &["json"],
+        "zone" | "runs" => &["json"],
         _ => &[],
     }
 }
