@@ -64,6 +64,7 @@ pub(crate) enum Invocation {
     Tune(Tune),
     Ablation(Ablation),
     Record(Record),
+    Search(Search),
     Tidy,
 }
 
@@ -189,6 +190,14 @@ pub(crate) struct Ablation {
 }
 
 #[derive(Debug, PartialEq)]
+pub(crate) struct Search {
+    pub(crate) space: Option<PathBuf>,
+    pub(crate) out: Option<PathBuf>,
+    pub(crate) quiet: bool,
+}
+
+/// `record`.
+#[derive(Debug)]
 pub(crate) struct Record {
     pub(crate) run: String,
     pub(crate) stage: &'static str,
@@ -307,6 +316,11 @@ impl Invocation {
                 out: parsed.given("out", parsed.file("out")?)?,
                 region: parsed.one_of("region", STAGES)?,
                 seed: parsed.integer("seed", 0)?,
+            }),
+            "search" => Self::Search(Search {
+                space: parsed.existing_file("space")?,
+                out: parsed.file("out")?,
+                quiet: parsed.switch("quiet"),
             }),
             "tidy" => Self::Tidy,
             _ => Self::Help(None),

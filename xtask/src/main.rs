@@ -19,6 +19,7 @@ mod profile;
 mod record;
 mod runner;
 mod runs;
+mod search;
 mod soak;
 mod suggest;
 mod tables;
@@ -73,6 +74,7 @@ fn dispatch(invocation: Invocation) -> anyhow::Result<ExitCode> {
         Invocation::Tune(flags) => flags.run(),
         Invocation::Ablation(flags) => flags.run(),
         Invocation::Record(flags) => flags.run(),
+        Invocation::Search(flags) => flags.run(),
         Invocation::Tidy => tidy::run(),
     }
 }

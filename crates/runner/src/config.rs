@@ -157,24 +157,81 @@ pub struct Reward {
     pub success: f64,
 }
 
-/// When a stage is mastered, and how often its state is kept.
+/// When each stage is mastered, and how often its state is kept.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Curriculum {
-    /// Episodes after which a stage ends, mastered or not.
+    /// Environment steps between two checkpoints.
+    pub checkpoint_every: u64,
+    /// The first stage.
+    pub purple: Goal,
+    /// The second stage.
+    pub yellow: Goal,
+    /// The last stage.
+    pub orange: Goal,
+}
+
+/// When one stage is mastered, and when it ends without.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Goal {
+    /// Episodes after which the stage ends, mastered or not.
     pub max_episodes: u64,
+    /// Environment steps after which the stage ends with the episode in progress, mastered or not.
+    pub max_steps: u64,
     /// Episodes of the rolling window over which success is counted.
     pub window: usize,
-    /// Share of successes over a full window that a stage needs to be mastered.
+    /// Share of successes over a full window that asks for a confirmation.
     pub mastered_at: f64,
-    /// Episodes of the deterministic evaluation that confirms a mastered stage.
+    /// Episodes of the evaluation without exploration that confirms a mastered stage.
     pub confirm_episodes: u64,
     /// Share of successes that the confirmation needs.
     pub confirmed_at: f64,
     /// Episodes between two confirmations at the least.
     pub confirm_every: u64,
-    /// Environment steps between two checkpoints.
-    pub checkpoint_every: u64,
+}
+
+impl Curriculum {
+    /// When a stage is mastered.
+    #[must_use]
+    pub fn of(&self, stage: Stage) -> &Goal {
+        match stage {
+            Stage::Purple => &self.purple,
+            Stage::Yellow => &self.yellow,
+            Stage::Orange => &self.orange,
+        }
+    }
+
+    fn check(&self) -> Result<(), ConfigError> {
+        positive("curriculum.checkpoint_every".into(), self.checkpoint_every as f64)?;
+        for stage in Stage::ALL {
+            let goal = self.of(stage);
+            let counts = [
+                ("max_episodes", goal.max_episodes),
+                ("max_steps", goal.max_steps),
+                ("window", goal.window as u64),
+                ("confirm_episodes", goal.confirm_episodes),
+                ("confirm_every", goal.confirm_every),
+            ];
+            for (field, value) in counts {
+                positive(format!("curriculum.{stage}.{field}"), value as f64)?;
+            }
+            for (field, value) in [("mastered_at", goal.mastered_at), ("confirmed_at", goal.confirmed_at)] {
+                if !(0.0..=1.0).contains(&value) {
+                    let field = format!("curriculum.{stage}.{field}");
+                    return Err(ConfigError::OutOfRange { field, expected: "in [0, 1]", value });
+                }
+            }
+        }
+        Ok(())
+    }
+}
+
+fn positive(field: String, value: f64) -> Result<(), ConfigError> {
+    if !(value.is_finite() && value > 0.0) {
+        return Err(ConfigError::OutOfRange { field, expected: "finite and > 0", value });
+    }
+    Ok(())
 }
 
 /// Why a configuration cannot be used.
@@ -227,7 +284,7 @@ impl ConfigSpec {
             .map_err(|error| anyhow!("cannot write the configuration: {error}"))
     }
 
-    fn check(&self) -> Result<(), ConfigError> {
+    pub(crate) fn check(&self) -> Result<(), ConfigError> {
         if self.schema != 1 {
             return Err(ConfigError::Schema(self.schema));
         }
@@ -249,24 +306,13 @@ impl ConfigSpec {
                 }
             }
         }
-        let positive = [
+        let positives = [
             ("task.reach_distance", self.task.reach_distance),
             ("task.reach_speed", self.task.reach_speed),
             ("task.max_steps", f64::from(self.task.max_steps)),
-            ("curriculum.max_episodes", self.curriculum.max_episodes as f64),
-            ("curriculum.window", self.curriculum.window as f64),
-            ("curriculum.confirm_episodes", self.curriculum.confirm_episodes as f64),
-            ("curriculum.confirm_every", self.curriculum.confirm_every as f64),
-            ("curriculum.checkpoint_every", self.curriculum.checkpoint_every as f64),
         ];
-        for (field, value) in positive {
-            if !(value.is_finite() && value > 0.0) {
-                return Err(ConfigError::OutOfRange {
-                    field: field.into(),
-                    expected: "finite and > 0",
-                    value,
-                });
-            }
+        for (field, value) in positives {
+            positive(field.into(), value)?;
         }
         let not_negative = [
             ("crane.payload", self.crane.payload),
@@ -284,16 +330,7 @@ impl ConfigSpec {
                 });
             }
         }
-        let rates = [
-            ("curriculum.mastered_at", self.curriculum.mastered_at),
-            ("curriculum.confirmed_at", self.curriculum.confirmed_at),
-        ];
-        for (field, value) in rates {
-            if !(0.0..=1.0).contains(&value) {
-                return Err(ConfigError::OutOfRange { field: field.into(), expected: "in [0, 1]", value });
-            }
-        }
-        Ok(())
+        self.curriculum.check()
     }
 }
 

@@ -4,7 +4,7 @@ use std::collections::VecDeque;
 
 use serde::{Deserialize, Serialize};
 
-use crate::config::Curriculum;
+use crate::config::Goal;
 
 /// How an episode ended, as far as the curriculum is concerned.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
@@ -45,11 +45,17 @@ impl Mastery {
         }
     }
 
+    /// True if the stage ends after `steps` environment steps: mastered, or without hope of it.
+    #[must_use]
+    pub fn is_over(&self, steps: u64, episodes: u64, goal: &Goal) -> bool {
+        self.mastered || self.episodes >= episodes || steps >= goal.max_steps
+    }
+
     /// Counts an episode.
-    pub fn add(&mut self, result: EpisodeResult, curriculum: &Curriculum) {
+    pub fn add(&mut self, result: EpisodeResult, goal: &Goal) {
         self.episodes += 1;
         self.recent.push_back(result);
-        while self.recent.len() > curriculum.window {
+        while self.recent.len() > goal.window {
             self.recent.pop_front();
         }
     }
@@ -69,17 +75,17 @@ impl Mastery {
 
     /// True if the window is full of enough successes and the last confirmation is long enough ago for another.
     #[must_use]
-    pub fn wants_confirmation(&self, curriculum: &Curriculum) -> bool {
+    pub fn wants_confirmation(&self, goal: &Goal) -> bool {
         let since = self.last_confirmation.map_or(u64::MAX, |last| self.episodes - last);
-        self.recent.len() >= curriculum.window
-            && self.success_rate() >= curriculum.mastered_at
-            && since >= curriculum.confirm_every
+        self.recent.len() >= goal.window
+            && self.success_rate() >= goal.mastered_at
+            && since >= goal.confirm_every
     }
 
     /// Notes a confirmation; true if it is the best so far.
-    pub fn confirm(&mut self, success_rate: f64, curriculum: &Curriculum) -> bool {
+    pub fn confirm(&mut self, success_rate: f64, goal: &Goal) -> bool {
         self.last_confirmation = Some(self.episodes);
-        self.mastered |= success_rate >= curriculum.confirmed_at;
+        self.mastered |= success_rate >= goal.confirmed_at;
         let best = self.best_confirmed.is_none_or(|best| success_rate >= best);
         if best {
             self.best_confirmed = Some(success_rate);
@@ -98,31 +104,31 @@ impl Default for Mastery {
 mod tests {
     use super::*;
 
-    const CURRICULUM: Curriculum = Curriculum {
+    const GOAL: Goal = Goal {
         max_episodes: 100,
+        max_steps: 1000,
         window: 4,
         mastered_at: 0.75,
         confirm_episodes: 10,
         confirmed_at: 0.9,
         confirm_every: 3,
-        checkpoint_every: 100,
     };
 
     fn after(reached: &[bool]) -> Mastery {
         let mut mastery = Mastery::new();
         for &reached in reached {
-            mastery.add(EpisodeResult { reached, return_: 1.0 }, &CURRICULUM);
+            mastery.add(EpisodeResult { reached, return_: 1.0 }, &GOAL);
         }
         mastery
     }
 
     #[test]
     fn a_full_window_of_successes_asks_for_confirmation() {
-        assert!(!after(&[true, true, true]).wants_confirmation(&CURRICULUM), "the window is not full");
-        assert!(!after(&[true, false, true, false]).wants_confirmation(&CURRICULUM));
-        assert!(after(&[false, true, true, true]).wants_confirmation(&CURRICULUM));
+        assert!(!after(&[true, true, true]).wants_confirmation(&GOAL), "the window is not full");
+        assert!(!after(&[true, false, true, false]).wants_confirmation(&GOAL));
+        assert!(after(&[false, true, true, true]).wants_confirmation(&GOAL));
         assert!(
-            after(&[false, false, true, true, true, true]).wants_confirmation(&CURRICULUM),
+            after(&[false, false, true, true, true, true]).wants_confirmation(&GOAL),
             "old failures count"
         );
     }
@@ -130,14 +136,14 @@ mod tests {
     #[test]
     fn a_failed_confirmation_is_repeated_only_after_a_while() {
         let mut mastery = after(&[true; 4]);
-        assert!(mastery.confirm(0.5, &CURRICULUM));
-        assert!(!mastery.mastered && !mastery.wants_confirmation(&CURRICULUM));
+        assert!(mastery.confirm(0.5, &GOAL));
+        assert!(!mastery.mastered && !mastery.wants_confirmation(&GOAL));
         for _ in 0..3 {
-            mastery.add(EpisodeResult { reached: true, return_: 0.0 }, &CURRICULUM);
+            mastery.add(EpisodeResult { reached: true, return_: 0.0 }, &GOAL);
         }
-        assert!(mastery.wants_confirmation(&CURRICULUM));
-        assert!(!mastery.confirm(0.4, &CURRICULUM), "worse than the first");
-        assert!(mastery.confirm(0.95, &CURRICULUM) && mastery.mastered);
+        assert!(mastery.wants_confirmation(&GOAL));
+        assert!(!mastery.confirm(0.4, &GOAL), "worse than the first");
+        assert!(mastery.confirm(0.95, &GOAL) && mastery.mastered);
         assert_eq!(mastery.best_confirmed, Some(0.95));
     }
 }

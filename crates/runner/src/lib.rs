@@ -55,6 +55,8 @@ pub mod progress;
 #[cfg(all(feature = "figures", feature = "training"))]
 pub mod report;
 #[cfg(feature = "training")]
+pub mod search;
+#[cfg(feature = "training")]
 pub mod tensorboard;
 #[cfg(feature = "training")]
 pub mod training;

@@ -1,5 +1,6 @@
 //! Training of one stage, from its start or from a checkpoint, until it is mastered.
 
+mod overlap;
 mod record;
 
 use std::fmt;
@@ -8,12 +9,13 @@ use std::sync::Arc;
 use std::time::Instant;
 
 use anyhow::{Context, Result, ensure};
-use sac_burn::{Agent, Outcome, Transition};
+use sac_burn::Agent;
 
-use self::record::{EpisodeRecord, LossMeans, Recorder};
+use self::overlap::Played;
+use self::record::{EpisodeRecord, Recorder};
 use crate::certificate::{Certificate, Part};
 use crate::checkpoint::{self, Header};
-use crate::config::{ConfigSpec, run_folder};
+use crate::config::{ConfigSpec, Goal, run_folder};
 use crate::curriculum::{EpisodeResult, Mastery};
 use crate::draw::{Purpose, Stream};
 use crate::environment::{Ending, Environment};
@@ -212,11 +214,16 @@ impl Training {
     /// # Errors
     /// The learning diverged, the simulation left its range, or a file cannot be written.
     pub fn run(mut self, request: &Request) -> Result<Finished> {
-        let episodes = request.episodes.unwrap_or(self.config.curriculum.max_episodes);
+        // A number of episodes that was asked for is the only bound.
+        let mut goal = *self.goal();
+        let episodes = request.episodes.unwrap_or(goal.max_episodes);
+        if request.episodes.is_some() {
+            goal.max_steps = u64::MAX;
+        }
         let mut progress = Progress::start(request.display, self.stage.name(), episodes);
         let started = now();
         let mut checkpoint_at = self.steps + self.config.curriculum.checkpoint_every;
-        while !self.mastery.mastered && self.mastery.episodes < episodes {
+        while !self.mastery.is_over(self.steps, episodes, &goal) {
             self.episode()?;
             progress.update(Status {
                 episode: self.mastery.episodes,
@@ -247,55 +254,28 @@ impl Training {
         })
     }
 
+    /// When the stage is mastered.
+    fn goal(&self) -> &Goal {
+        self.config.curriculum.of(self.stage)
+    }
+
     /// One training episode, its record, and a confirmation if it is time for one.
     fn episode(&mut self) -> Result<()> {
         let number = self.mastery.episodes;
         let mut stream = Stream::of_episode(self.config.seed, Purpose::Training, self.stage, number);
         let episode = self.environment.draw(self.machine.regions().of(self.stage), &mut stream)?;
         self.environment.start(&episode)?;
-        let mut observation = vec![0.0; self.scaling.len()];
-        let mut next_observation = observation.clone();
-        let mut action = vec![0.0; self.machine.moving().len()];
-        let mut losses = LossMeans::default();
-        let mut return_ = 0.0;
-        self.environment.observe(&self.scaling, &mut observation);
-        let ending = loop {
-            self.agent.act(&observation, &mut action);
-            let begun = now();
-            let step = self.environment.step(&action)?;
-            self.time.environment += begun.elapsed().as_secs_f64();
-            self.environment.observe(&self.scaling, &mut next_observation);
-            let outcome = match step.ending {
-                None => Outcome::Continues,
-                Some(Ending::Reached) => Outcome::Terminal,
-                Some(Ending::TimeOut) => Outcome::Truncated,
-            };
-            let reward = step.reward as f32;
-            self.agent.remember(&Transition {
-                observation: &observation,
-                action: &action,
-                reward,
-                next_observation: &next_observation,
-                outcome,
-            })?;
-            let begun = now();
-            for _ in 0..self.config.learner.spec().updates_per_step {
-                if let Some(update) = self.agent.update() {
-                    losses.add(&update).with_context(|| format!("learning diverged in episode {number}"))?;
-                    self.time.updates += 1;
-                }
-            }
-            self.time.learner += begun.elapsed().as_secs_f64();
-            self.time.steps += 1;
-            self.steps += 1;
-            return_ += step.reward;
-            std::mem::swap(&mut observation, &mut next_observation);
-            if let Some(ending) = step.ending {
-                break ending;
-            }
-        };
+        let played = overlap::play(&mut self.environment, &mut self.agent, &self.scaling)
+            .with_context(|| format!("episode {number}"))?;
+        let Played { ending, return_, losses, .. } = played;
+        let steps = u64::from(self.environment.steps());
+        self.steps += steps;
+        self.time.steps += steps;
+        self.time.updates += played.updates;
+        self.time.environment += played.environment;
+        self.time.learner += played.learner;
         let reached = ending == Ending::Reached;
-        self.mastery.add(EpisodeResult { reached, return_ }, &self.config.curriculum);
+        self.mastery.add(EpisodeResult { reached, return_ }, self.config.curriculum.of(self.stage));
         let seen = self.environment.take_evidence();
         self.evidence.join(&seen);
         let confirmed = self.confirm_if_due()?;
@@ -317,7 +297,7 @@ impl Training {
 
     /// Confirms the stage by a deterministic evaluation if its window of successes asks for one; gives the success rate.
     fn confirm_if_due(&mut self) -> Result<Option<f64>> {
-        if !self.mastery.wants_confirmation(&self.config.curriculum) {
+        if !self.mastery.wants_confirmation(self.goal()) {
             return Ok(None);
         }
         let plan = self.plan(Purpose::Confirmation);
@@ -325,7 +305,7 @@ impl Training {
         let evaluation = evaluation::evaluate(policy, &self.scaling, &self.machine, plan)?;
         let rate = evaluation.summary.success_rate;
         self.evidence.join(&evaluation.evidence);
-        if self.mastery.confirm(rate, &self.config.curriculum) {
+        if self.mastery.confirm(rate, self.config.curriculum.of(self.stage)) {
             self.save(&best(&self.folder))?;
         }
         tracing::info!(stage = self.stage.name(), episode = self.mastery.episodes, rate, "confirmation");
@@ -333,7 +313,7 @@ impl Training {
     }
 
     fn plan(&self, purpose: Purpose) -> Plan {
-        let episodes = self.config.curriculum.confirm_episodes;
+        let episodes = self.goal().confirm_episodes;
         Plan { stage: self.stage, episodes, seed: self.config.seed, purpose }
     }
 

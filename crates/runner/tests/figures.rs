@@ -36,7 +36,7 @@ fn trained_project() -> Project {
     };
     config.learner = sac_burn::Config::try_from(learner).unwrap();
     config.task.max_steps = 20;
-    config.curriculum.confirm_episodes = 4;
+    config.curriculum.purple.confirm_episodes = 4;
     project.write(runner::config::DEFAULT, config.to_ron().unwrap());
     for run in ["a", "b --seed 1"] {
         check_success(&runner(&project, &format!("train --quiet --stage purple --episodes 6 --run {run}")));

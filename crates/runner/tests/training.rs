@@ -28,7 +28,7 @@ fn small_project() -> Project {
     };
     config.learner = sac_burn::Config::try_from(learner).unwrap();
     config.task.max_steps = 20;
-    config.curriculum.confirm_episodes = 4;
+    config.curriculum.purple.confirm_episodes = 4;
     config.curriculum.checkpoint_every = 50;
     project.write(runner::config::DEFAULT, config.to_ron().unwrap());
     project

@@ -44,7 +44,7 @@ impl Adam {
 
     /// 1 − β₁ᵗ and 1 − β₂ᵗ.
     fn corrections(&self, count: u64) -> (f64, f64) {
-        (1.0 - self.beta_1.powf(count as f64), 1.0 - self.beta_2.powf(count as f64))
+        (1.0 - libm::pow(self.beta_1, count as f64), 1.0 - libm::pow(self.beta_2, count as f64))
     }
 }
 

@@ -55,8 +55,10 @@ pub struct Agent {
     pub(crate) steps: u64,
     /// Gradient updates since the agent was made.
     pub(crate) updates: u64,
-    /// Host copy of the actor, equal to it after every update.
-    policy: Policy,
+    /// The actor as it acts on one observation at a time; equal to it after every update.
+    pub(crate) explorer: Policy,
+    /// What was learnt: follows the actor by `policy_share` per update.
+    pub(crate) policy: Policy,
     /// Kept between updates for its memory alone.
     pub(crate) batch: Batch,
 }
@@ -126,10 +128,11 @@ impl Agent {
         Ok(Self {
             observation_dim,
             action_dim,
-            targets: critics.duplicate(),
+            targets: critics.clone(),
             actor_optimizer: Optimizer::new(&actor),
             critic_optimizer: Optimizer::new(&critics),
             temperature: Temperature::new(spec.initial_entropy_temperature),
+            explorer: Policy::of(&actor),
             policy: Policy::of(&actor),
             replay,
             noise,
@@ -206,7 +209,7 @@ impl Agent {
         self.steps < self.config.spec().random_steps
     }
 
-    /// The deterministic policy as it is now.
+    /// The deterministic policy as it is now: a moving average of the actors that the updates made.
     pub fn policy(&self) -> &Policy {
         &self.policy
     }
@@ -227,7 +230,7 @@ impl Agent {
             action.fill_with(|| self.noise.uniform(1.0));
             return;
         }
-        let head = self.policy.head(observation);
+        let head = self.explorer.head(observation);
         let mut noise = vec![0.0; self.action_dim];
         self.noise.fill_normal(&mut noise);
         action.copy_from_slice(&sample(&head, &noise, self.action_dim, self.std_bounds()).actions);
@@ -258,8 +261,14 @@ impl Agent {
         StdBounds { min: spec.log_std_min as f32, max: spec.log_std_max as f32 }
     }
 
+    /// Lets the policy follow the actor after an update.
+    pub(crate) fn follow_actor(&mut self) {
+        self.refresh_explorer();
+        self.policy.follow(self.config.spec().policy_share as f32, &self.explorer);
+    }
+
     /// Brings the host copy of the actor up to date after its weights were replaced.
-    pub(crate) fn refresh_policy(&mut self) {
-        self.policy.copy_from(&self.actor);
+    pub(crate) fn refresh_explorer(&mut self) {
+        self.explorer.copy_from(&self.actor);
     }
 }

@@ -11,7 +11,16 @@ use crate::noise::Noise;
 use crate::policy::count;
 use crate::wire::{CheckpointError, Format, Frame, Unframe, check_finite};
 
-const FORMAT: Format = Format { magic: *b"sac-agnt", name: "agent checkpoint", version: 1 };
+/// Version 1 had no averaged policy: its policy was the actor.
+const FORMAT: Format = Format { magic: *b"sac-agnt", name: "agent checkpoint", version: 2, upgrade };
+
+fn upgrade(version: u32, header: &mut serde_json::Value) {
+    if version == 1
+        && let Some(config) = header.get_mut("config").and_then(serde_json::Value::as_object_mut)
+    {
+        config.insert("policy_share".into(), 1.0.into());
+    }
+}
 
 /// Everything but the numbers: enough to know how many of them follow.
 #[derive(Serialize, Deserialize)]
@@ -31,7 +40,7 @@ struct Header {
 }
 
 impl Agent {
-    /// Writes everything that resuming needs: networks, target critics, Adam moments and step counts, entropy
+    /// Writes everything that resuming needs: networks, target critics, policy, Adam moments and step counts, entropy
     /// temperature, the filled part of the replay memory, the state of the generator, counters, configuration.
     ///
     /// Many small writes: hand in a buffered writer. The caller sees to it that a file is written whole or not at
@@ -55,7 +64,7 @@ impl Agent {
             replay_next: self.replay.next(),
             noise: self.noise.clone(),
         };
-        let mut frame = Frame::begin(out, FORMAT, &header, number_bytes(&header))?;
+        let mut frame = Frame::begin(out, FORMAT, &header, number_bytes(&header, FORMAT.version))?;
         for value in [self.temperature.log, self.temperature.moments[0], self.temperature.moments[1]] {
             frame.double(value)?;
         }
@@ -67,6 +76,10 @@ impl Agent {
                 }
             });
             result?;
+        }
+        for (weights, bias) in self.policy.layers() {
+            frame.numbers(weights)?;
+            frame.numbers(bias)?;
         }
         for optimizer in [&self.actor_optimizer, &self.critic_optimizer] {
             for moments in optimizer.moments.iter().flatten() {
@@ -89,7 +102,8 @@ impl Agent {
     pub fn load(input: &mut impl Read) -> Result<Self, CheckpointError> {
         let (mut frame, header) = Unframe::begin::<Header>(input, FORMAT)?;
         check_replay(&header)?;
-        frame.expect_numbers(number_bytes(&header))?;
+        let version = frame.version();
+        frame.expect_numbers(number_bytes(&header, version))?;
         let (observation_dim, action_dim) = (header.observation_dim, header.action_dim);
         let mut agent =
             Self::new(header.config, observation_dim, action_dim, 0).map_err(|error| match error {
@@ -103,6 +117,11 @@ impl Agent {
         for network in [&mut agent.actor, &mut agent.critics, &mut agent.targets] {
             network.visit_mut(|values| frame.numbers(values))?;
         }
+        agent.refresh_explorer();
+        agent.policy.clone_from(&agent.explorer);
+        if version > 1 {
+            agent.policy.visit_mut(|values| frame.numbers(values))?;
+        }
         for optimizer in [&mut agent.actor_optimizer, &mut agent.critic_optimizer] {
             read_moments(&mut frame, optimizer)?;
         }
@@ -115,7 +134,6 @@ impl Agent {
         agent.updates = header.updates;
         agent.noise = header.noise;
         agent.check_finite()?;
-        agent.refresh_policy();
         Ok(agent)
     }
 
@@ -137,6 +155,10 @@ impl Agent {
                 }
             });
             result?;
+        }
+        for (weights, bias) in self.policy.layers() {
+            check_finite("policy", weights)?;
+            check_finite("policy", bias)?;
         }
         for optimizer in [&self.actor_optimizer, &self.critic_optimizer] {
             for moments in optimizer.moments.iter().flatten() {
@@ -174,13 +196,14 @@ fn check_replay(header: &Header) -> Result<(), CheckpointError> {
 }
 
 /// Bytes of numbers that belong to a header; saturates, so that no header can wrap it.
-fn number_bytes(header: &Header) -> u64 {
+fn number_bytes(header: &Header, version: u32) -> u64 {
     let hidden = header.config.spec().hidden.as_slice();
     let (o, a) = (header.observation_dim, header.action_dim);
     let actor = count(&[&[o], hidden, &[a.saturating_mul(2)]].concat());
     let critic = count(&[&[o.saturating_add(a)], hidden, &[1]].concat());
-    // Actor with two moments; two critics, their targets, two moments of the critics.
-    let networks = actor.saturating_mul(3).saturating_add(critic.saturating_mul(8));
+    // Actor with two moments and, from version 2 on, its average; two critics, their targets, two moments of the critics.
+    let networks =
+        actor.saturating_mul(if version > 1 { 4 } else { 3 }).saturating_add(critic.saturating_mul(8));
     let row = (o as u64).saturating_mul(2).saturating_add(a as u64).saturating_add(2);
     let replay = row.saturating_mul(header.replay_len as u64);
     networks.saturating_add(replay).saturating_mul(4).saturating_add(24)

@@ -18,6 +18,8 @@ pub struct ConfigSpec {
     pub learning_rate: f64,
     /// Share of the online critics that the target critics take over at every update, in (0, 1].
     pub polyak: f64,
+    /// Share of the actor that the deterministic policy takes over at every update, in (0, 1]; 1 is the actor itself.
+    pub policy_share: f64,
     /// Steps of uniformly random actions before the policy acts.
     pub random_steps: u64,
     /// Transitions that the replay memory must hold before an update takes place; the batch size if smaller.
@@ -120,7 +122,8 @@ impl Config {
     /// The paper's agent: Table I, and the usual values where the paper is silent.
     ///
     /// From the table: batch 128, replay 1 000 000, discount 0.99, learning rate 1e-4, Polyak 0.001, 10 000 random
-    /// steps. Ours: no update during the random steps, then one per step; two hidden layers of 256; initial entropy
+    /// steps. Ours: the policy is the actor itself; no update during the random steps, then one per step; two hidden
+    /// layers of 256; initial entropy
     /// temperature 1 and target entropy −(action dimensions); ln σ in [−20, 2]; Adam's betas 0.9 and 0.999, ε 1e-8.
     ///
     /// Source: [P, Table I]; `docs/sac.md` gives the reasons.
@@ -132,6 +135,7 @@ impl Config {
                 discount: 0.99,
                 learning_rate: 1e-4,
                 polyak: 0.001,
+                policy_share: 1.0,
                 random_steps: 10_000,
                 update_after: 10_000,
                 updates_per_step: 1,
@@ -186,7 +190,9 @@ impl TryFrom<ConfigSpec> for Config {
         }
         check("discount", "in [0, 1)", spec.discount, |x| (0.0..1.0).contains(&x))?;
         check("learning_rate", "finite and > 0", spec.learning_rate, |x| x > 0.0)?;
-        check("polyak", "in (0, 1]", spec.polyak, |x| x > 0.0 && x <= 1.0)?;
+        for (field, share) in [("polyak", spec.polyak), ("policy_share", spec.policy_share)] {
+            check(field, "in (0, 1]", share, |x| x > 0.0 && x <= 1.0)?;
+        }
         let temperature = spec.initial_entropy_temperature;
         check("initial_entropy_temperature", "finite and > 0", temperature, |x| x > 0.0)?;
         check("target_entropy", "finite", spec.target_entropy.unwrap_or(0.0), |_| true)?;

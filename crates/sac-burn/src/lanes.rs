@@ -6,6 +6,8 @@
 
 use pulp::Arch;
 
+use crate::blocks::{LANES, Lanes};
+
 /// Adam's coefficients of one step, bias corrections included.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct AdamStep {
@@ -71,71 +73,32 @@ pub(crate) fn follow(share: f32, target: &mut [f32], online: &[f32]) {
     );
 }
 
-/// Adds a bias to every row: values [rows, width], bias \[width\].
-pub(crate) fn add_bias(values: &mut [f32], bias: &[f32]) {
-    let rows = values.chunks_exact_mut(bias.len());
-    Arch::new().dispatch(
-        #[inline(always)]
-        move || {
-            for row in rows {
-                for (value, b) in row.iter_mut().zip(bias) {
-                    *value += b;
-                }
-            }
-        },
-    );
+/// sums ← sums + values.
+pub(crate) fn add_lanes(sums: &mut Lanes, values: &Lanes) {
+    for (sum, value) in sums.iter_mut().zip(values) {
+        *sum += value;
+    }
 }
 
-/// Adds a bias to every row and cuts negative numbers: max(0, value + bias). NaN stays NaN.
-pub(crate) fn add_bias_relu(values: &mut [f32], bias: &[f32]) {
-    let rows = values.chunks_exact_mut(bias.len());
-    Arch::new().dispatch(
-        #[inline(always)]
-        move || {
-            for row in rows {
-                for (value, b) in row.iter_mut().zip(bias) {
-                    let x = *value + b;
-                    *value = if x < 0.0 { 0.0 } else { x };
-                }
-            }
-        },
-    );
+/// Sum of the lanes, by halves.
+pub(crate) fn sum_lanes(mut lanes: Lanes) -> f32 {
+    let mut half = LANES / 2;
+    while half > 0 {
+        for lane in 0..half {
+            lanes[lane] += lanes[lane + half];
+        }
+        half /= 2;
+    }
+    lanes[0]
 }
 
-/// Sum of the rows: values [rows, width] → \[width\], added row by row.
-pub(crate) fn sum_rows(values: &[f32], sum: &mut [f32]) {
-    sum.fill(0.0);
-    let rows = values.chunks_exact(sum.len());
-    Arch::new().dispatch(
-        #[inline(always)]
-        move || {
-            for row in rows {
-                for (s, value) in sum.iter_mut().zip(row) {
-                    *s += value;
-                }
-            }
-        },
-    );
-}
-
-/// Backward pass of [`add_bias_relu`]: clears the gradient where the output was cut, and sums the rows of what is
-/// left into the gradient of the bias.
-pub(crate) fn relu_backward(gradient: &mut [f32], output: &[f32], bias_gradient: &mut [f32]) {
-    bias_gradient.fill(0.0);
-    let width = bias_gradient.len();
-    let rows = gradient.chunks_exact_mut(width).zip(output.chunks_exact(width));
-    Arch::new().dispatch(
-        #[inline(always)]
-        move || {
-            for (row, output) in rows {
-                for ((g, o), sum) in row.iter_mut().zip(output).zip(bias_gradient.iter_mut()) {
-                    let kept = if *o > 0.0 { *g } else { 0.0 };
-                    *g = kept;
-                    *sum += kept;
-                }
-            }
-        },
-    );
+/// columns[s][f] ← rows[f][s], for up to [`LANES`] rows; what no row fills stays.
+pub(crate) fn transpose(rows: &[Lanes], columns: &mut [Lanes]) {
+    for (sample, column) in columns.iter_mut().enumerate() {
+        for (value, row) in column.iter_mut().zip(rows) {
+            *value = row[sample];
+        }
+    }
 }
 
 /// One input through one layer: output ← bias + inputᵀ·weights, weights [inputs, outputs], inputs in order.

@@ -1,12 +1,20 @@
-//! Soft actor-critic (Haarnoja et al. 2018) on burn's Flex backend.
+//! Soft actor-critic (Haarnoja et al. 2018), exact to the bit, with burn beside it.
 //!
-//! The learning layer of the workspace, and where burn ends: the public interface is flat `f32` slices and bytes. It
-//! knows neither cranes nor files nor clocks.
+//! The learning layer of the workspace. The public interface is flat `f32` slices and bytes; it knows neither cranes
+//! nor files nor clocks.
+//!
+//! ```text
+//!  observation ──► Agent::act ──► action ──► your environment
+//!       ▲                                        │ reward, next observation
+//!       │          Agent::update ◄── Replay ◄────┘ Agent::remember
+//!       └───────── one batch: twin critics, target critics, actor, entropy temperature
+//! ```
 //!
 //! - [`Config`]: every hyperparameter, checked; [`Config::table_1`] is the paper's.
 //! - [`Agent`]: acts, remembers, updates, and saves and loads itself so that resuming continues bit for bit.
 //! - [`Replay`]: the memory that the agent learns from, in one allocation.
 //! - [`Policy`]: the deterministic policy alone, for evaluation and deployment.
+//! - [`ActorModule`]: a policy as a burn module.
 //!
 //! # Speed
 //! One thread. Matrix products take most of an update, with AVX-512 where the machine has it. What is left is
@@ -14,24 +22,28 @@
 //! every product and glibc may return each to the operating system. `benches/sac.rs` measures all of it.
 //!
 //! # Determinism
-//! All noise is drawn on the host from one generator that the checkpoint holds. burn's `rayon` feature is off, so
-//! no sum depends on how threads split it. Other machines may round differently.
+//! Equal configuration, seed and sequence of calls give equal bits on every x86-64 processor: all noise comes from one
+//! generator that the checkpoint holds, every number of a matrix product is one chain of fused multiply-adds in a fixed
+//! order, other sums have a fixed order too, and elementary functions are `libm`'s. burn's automatic differentiation
+//! is the reference that the tests hold the gradients against.
 #![forbid(unsafe_code)]
 
 mod adam;
 mod agent;
+mod blocks;
 mod checkpoint;
 mod config;
 mod lanes;
 mod losses;
+mod module;
 mod network;
 mod noise;
 mod objective;
 mod policy;
+mod product;
 mod replay;
 mod squash;
 mod temperature;
-mod tensor;
 mod transition;
 mod update;
 mod wire;
@@ -39,6 +51,7 @@ mod wire;
 pub use agent::{Agent, AgentError, ReplayStart};
 pub use config::{Config, ConfigError, ConfigSpec};
 pub use losses::Losses;
+pub use module::ActorModule;
 pub use noise::Noise;
 pub use policy::Policy;
 pub use replay::{Batch, Replay, ReplayAllocationError};

@@ -1,26 +1,27 @@
 //! Multi-layer perceptrons: one for the actor, two side by side for the twin critics.
 //!
-//! Matrix products are burn's, batched over the members; bias, ReLU and their gradients are fused loops on the same
-//! memory, since Flex would make one pass and one allocation per operation. The backward pass is written out here:
-//! it computes what a loss needs and no more, so that the actor's loss costs no gradient of a critic weight.
+//! The backward pass is written out here: it computes what a loss needs and no more, so that the actor's loss costs no
+//! gradient of a critic weight. Bias and ReLU are part of the products.
 
-use crate::lanes::{Moments, add_bias, add_bias_relu, relu_backward, sum_rows};
-use crate::lanes::{adam, follow};
+use crate::adam::Adam;
+use crate::blocks::Blocks;
+use crate::lanes::{AdamStep, Moments, adam, follow};
 use crate::noise::Noise;
-use crate::tensor::{Host, Matrices, matrices};
-use crate::{adam::Adam, lanes::AdamStep};
+use crate::product::{Weights, backward, forward, outer};
 
 /// One fully connected layer of every member.
-#[derive(Debug)]
-pub(crate) struct Layer {
-    /// [member, input, output]. `None` only while [`Layer::with_weights`] works on it.
-    weights: Option<Matrices>,
+#[derive(Clone, Debug)]
+struct Layer {
+    inputs: usize,
+    outputs: usize,
+    /// [member, input, output].
+    weights: Vec<f32>,
     /// [member, output].
     bias: Vec<f32>,
 }
 
 /// Perceptrons of equal shape, with ReLU between the layers and nothing after the last.
-#[derive(Debug)]
+#[derive(Clone, Debug)]
 pub(crate) struct Network {
     members: usize,
     /// Inputs, hidden units layer by layer, outputs.
@@ -30,10 +31,10 @@ pub(crate) struct Network {
 
 /// What a forward pass leaves behind for the backward pass.
 #[derive(Debug)]
-pub(crate) struct Tape {
-    batch: usize,
-    /// Input of each layer, [1 or member, batch, width].
-    inputs: Vec<Matrices>,
+pub(crate) struct Tape<'a> {
+    input: &'a Blocks,
+    /// Inputs of the second layer and those after it, of each member.
+    hidden: Vec<Vec<Blocks>>,
     /// [member, batch, output], row-major.
     pub(crate) output: Vec<f32>,
 }
@@ -41,7 +42,7 @@ pub(crate) struct Tape {
 /// Gradient of a loss with respect to every weight and bias, layer by layer.
 #[derive(Debug)]
 pub(crate) struct Gradients {
-    weights: Vec<Host>,
+    weights: Vec<Vec<f32>>,
     biases: Vec<Vec<f32>>,
 }
 
@@ -55,16 +56,16 @@ pub(crate) struct Optimizer {
 }
 
 impl Layer {
-    fn weights(&self) -> Matrices {
-        self.weights.clone().expect("weights are out only inside with_weights")
+    fn forward(&self, member: usize, relu: bool, input: &Blocks) -> Blocks {
+        let bias = &self.bias[member * self.outputs..][..self.outputs];
+        forward(self.weights(member, 0, self.inputs), bias, relu, input)
     }
 
-    /// Works on the weights as a host slice, in place.
-    fn with_weights<R>(&mut self, work: impl FnOnce(&mut [f32]) -> R) -> R {
-        let mut host = Host::take(self.weights.take().expect("weights are out only inside with_weights"));
-        let result = work(host.values_mut());
-        self.weights = Some(host.give());
-        result
+    /// Weights of one member from the inputs `from..to`.
+    fn weights(&self, member: usize, from: usize, to: usize) -> Weights<'_> {
+        let start = (member * self.inputs + from) * self.outputs;
+        let values = &self.weights[start..start + (to - from) * self.outputs];
+        Weights { values, outputs: self.outputs }
     }
 }
 
@@ -73,23 +74,13 @@ impl Network {
     pub(crate) fn new(members: usize, widths: &[usize], noise: &mut Noise) -> Self {
         let mut layers = Vec::with_capacity(widths.len() - 1);
         for pair in widths.windows(2) {
-            let bound = 1.0 / (pair[0] as f32).sqrt();
+            let [inputs, outputs] = [pair[0], pair[1]];
+            let bound = 1.0 / (inputs as f32).sqrt();
             let mut draw = |count| (0..count).map(|_| noise.uniform(bound)).collect::<Vec<f32>>();
-            let weights = matrices(draw(members * pair[0] * pair[1]), [members, pair[0], pair[1]]);
-            layers.push(Layer { weights: Some(weights), bias: draw(members * pair[1]) });
+            let weights = draw(members * inputs * outputs);
+            layers.push(Layer { inputs, outputs, weights, bias: draw(members * outputs) });
         }
         Self { members, widths: widths.to_vec(), layers }
-    }
-
-    /// A copy that shares nothing.
-    pub(crate) fn duplicate(&self) -> Self {
-        let mut copy = Self { members: self.members, widths: self.widths.clone(), layers: Vec::new() };
-        for (layer, pair) in self.layers.iter().zip(self.widths.windows(2)) {
-            let weights = Host::take(layer.weights()).values().to_vec();
-            let weights = Some(matrices(weights, [self.members, pair[0], pair[1]]));
-            copy.layers.push(Layer { weights, bias: layer.bias.clone() });
-        }
-        copy
     }
 
     /// Inputs, hidden units layer by layer, outputs.
@@ -97,108 +88,79 @@ impl Network {
         &self.widths
     }
 
-    /// Output alone, [member, batch, output], for an input of [batch, input] that all members share.
-    pub(crate) fn forward(&self, input: Vec<f32>) -> Vec<f32> {
-        self.run(input, |_| ()).1
+    /// Output alone, [member, batch, output], for an input that all members share.
+    pub(crate) fn forward(&self, input: &Blocks) -> Vec<f32> {
+        self.run(input, |_| ())
     }
 
     /// Output and what [`Network::gradients`] and [`Network::input_gradient`] need.
-    pub(crate) fn forward_taped(&self, input: Vec<f32>) -> Tape {
-        let mut inputs = Vec::with_capacity(self.layers.len());
-        let (batch, output) = self.run(input, |x| inputs.push(x.clone()));
-        Tape { batch, inputs, output }
+    pub(crate) fn forward_taped<'a>(&self, input: &'a Blocks) -> Tape<'a> {
+        let mut all = Vec::with_capacity(self.members * self.layers.len());
+        let output = self.run(input, |x| all.push(x));
+        let mut all = all.into_iter();
+        let per_member = self.layers.len() - 1;
+        let hidden = (0..self.members).map(|_| all.by_ref().take(per_member).collect()).collect();
+        Tape { input, hidden, output }
     }
 
-    fn run(&self, input: Vec<f32>, mut keep: impl FnMut(&Matrices)) -> (usize, Vec<f32>) {
-        let batch = input.len() / self.widths[0];
-        let mut x = matrices(input, [1, batch, self.widths[0]]);
-        for (index, layer) in self.layers.iter().enumerate() {
-            keep(&x);
-            let mut y = Host::take(x.matmul(layer.weights()));
-            let width = self.widths[index + 1];
-            let last = index + 1 == self.layers.len();
-            for (values, bias) in
-                y.values_mut().chunks_exact_mut(batch * width).zip(layer.bias.chunks_exact(width))
-            {
-                if last { add_bias(values, bias) } else { add_bias_relu(values, bias) }
+    /// The outputs; `keep` is given what goes from layer to layer, member by member.
+    fn run(&self, input: &Blocks, mut keep: impl FnMut(Blocks)) -> Vec<f32> {
+        let (last, hidden) = self.layers.split_last().expect("a network has at least one layer");
+        let mut output = Vec::with_capacity(self.members * input.batch() * last.outputs);
+        for member in 0..self.members {
+            let mut x: Option<Blocks> = None;
+            for layer in hidden {
+                let y = layer.forward(member, true, x.as_ref().unwrap_or(input));
+                x.replace(y).map(&mut keep);
             }
-            if last {
-                return (batch, y.values().to_vec());
-            }
-            x = y.give();
+            output.extend(last.forward(member, false, x.as_ref().unwrap_or(input)).to_rows());
+            x.map(&mut keep);
         }
-        unreachable!("the last layer returns, and a network has at least one")
+        output
     }
 
     /// Gradient with respect to the parameters, for `upstream` = ∂loss/∂output of shape [member, batch, output].
-    pub(crate) fn gradients(&self, mut tape: Tape, upstream: Vec<f32>) -> Gradients {
-        let depth = self.layers.len();
-        let mut weights = Vec::with_capacity(depth);
-        let mut biases: Vec<Vec<f32>> = self.layers.iter().map(|l| vec![0.0; l.bias.len()]).collect();
-        let outputs = self.widths[depth];
-        for (values, sum) in
-            upstream.chunks_exact(tape.batch * outputs).zip(biases[depth - 1].chunks_exact_mut(outputs))
-        {
-            sum_rows(values, sum);
-        }
-        let mut dy = matrices(upstream, [self.members, tape.batch, outputs]);
-        for index in (0..depth).rev() {
-            let input = tape.inputs.pop().expect("the tape has one input per layer");
-            weights.push(Host::take(input.clone().swap_dims(1, 2).matmul(dy.clone())));
-            if index > 0 {
-                let dx = dy.matmul(self.layers[index].weights().swap_dims(1, 2));
-                dy = self.through_relu(index, input, dx, tape.batch, &mut biases[index - 1]);
+    pub(crate) fn gradients(&self, tape: &Tape<'_>, upstream: &[f32]) -> Gradients {
+        let zeros = |array: fn(&Layer) -> &Vec<f32>| -> Vec<Vec<f32>> {
+            self.layers.iter().map(|layer| vec![0.0; array(layer).len()]).collect()
+        };
+        let mut gradients = Gradients { weights: zeros(|l| &l.weights), biases: zeros(|l| &l.bias) };
+        for (member, upstream) in upstream.chunks_exact(upstream.len() / self.members).enumerate() {
+            let mut dy = Blocks::from_rows(&[(upstream, self.widths[self.layers.len()])]);
+            for (index, layer) in self.layers.iter().enumerate().rev() {
+                let size = layer.inputs * layer.outputs;
+                let input = tape.input_of(member, index);
+                outer(input, &dy, &mut gradients.weights[index][member * size..][..size]);
+                dy.sum(&mut gradients.biases[index][member * layer.outputs..][..layer.outputs]);
+                if index > 0 {
+                    dy = backward(layer.weights(member, 0, layer.inputs), &dy, Some(input));
+                }
             }
         }
-        weights.reverse();
-        Gradients { weights, biases }
+        gradients
     }
 
     /// Gradient with respect to the inputs `from..to`, [batch, to − from], summed over the members.
     pub(crate) fn input_gradient(
         &self,
-        mut tape: Tape,
-        upstream: Vec<f32>,
+        tape: &Tape<'_>,
+        upstream: &[f32],
         from: usize,
         to: usize,
     ) -> Vec<f32> {
-        let depth = self.layers.len();
-        let mut unused: Vec<f32> = Vec::new();
-        let mut dy = matrices(upstream, [self.members, tape.batch, self.widths[depth]]);
-        for index in (1..depth).rev() {
-            let input = tape.inputs.pop().expect("the tape has one input per layer");
-            let dx = dy.matmul(self.layers[index].weights().swap_dims(1, 2));
-            unused.resize(self.members * self.widths[index], 0.0);
-            dy = self.through_relu(index, input, dx, tape.batch, &mut unused);
+        let mut sum = vec![0.0; tape.input.batch() * (to - from)];
+        for (member, upstream) in upstream.chunks_exact(upstream.len() / self.members).enumerate() {
+            let mut dy = Blocks::from_rows(&[(upstream, self.widths[self.layers.len()])]);
+            for (index, layer) in self.layers.iter().enumerate().skip(1).rev() {
+                let input = tape.input_of(member, index);
+                dy = backward(layer.weights(member, 0, layer.inputs), &dy, Some(input));
+            }
+            let dx = backward(self.layers[0].weights(member, from, to), &dy, None).to_rows();
+            for (sum, dx) in sum.iter_mut().zip(dx) {
+                *sum += dx;
+            }
         }
-        let rows = self.layers[0].weights().narrow(1, from, to - from);
-        let dx = Host::take(dy.matmul(rows.swap_dims(1, 2)));
-        let mut sum = vec![0.0; tape.batch * (to - from)];
-        sum_rows(dx.values(), &mut sum);
         sum
-    }
-
-    /// Takes ∂loss/∂(input of layer `index`) to before the ReLU that made that input, and sums the bias gradient.
-    fn through_relu(
-        &self,
-        index: usize,
-        input: Matrices,
-        gradient: Matrices,
-        batch: usize,
-        bias_gradient: &mut [f32],
-    ) -> Matrices {
-        let width = self.widths[index];
-        let (output, mut gradient) = (Host::take(input), Host::take(gradient));
-        let size = batch * width;
-        for ((g, o), b) in gradient
-            .values_mut()
-            .chunks_exact_mut(size)
-            .zip(output.values().chunks_exact(size))
-            .zip(bias_gradient.chunks_exact_mut(width))
-        {
-            relu_backward(g, o, b);
-        }
-        gradient.give()
     }
 
     /// One Adam step.
@@ -206,7 +168,7 @@ impl Network {
         let step = optimizer.begin(adam_);
         for (index, layer) in self.layers.iter_mut().enumerate() {
             let [weights, bias] = &mut optimizer.moments[index];
-            layer.with_weights(|w| adam(step, w, weights, gradients.weights[index].values()));
+            adam(step, &mut layer.weights, weights, &gradients.weights[index]);
             adam(step, &mut layer.bias, bias, &gradients.biases[index]);
         }
     }
@@ -214,20 +176,15 @@ impl Network {
     /// One Adam step, after which `target` follows by `polyak`: target ← (1 − polyak)·target + polyak·online.
     pub(crate) fn step_followed(
         &mut self,
-        adam_: &Adam,
+        adam: &Adam,
         optimizer: &mut Optimizer,
         gradients: &Gradients,
         target: &mut Self,
         polyak: f32,
     ) {
-        let step = optimizer.begin(adam_);
-        for (index, (layer, target)) in self.layers.iter_mut().zip(&mut target.layers).enumerate() {
-            let [weights, bias] = &mut optimizer.moments[index];
-            layer.with_weights(|w| {
-                adam(step, w, weights, gradients.weights[index].values());
-                target.with_weights(|t| follow(polyak, t, w));
-            });
-            adam(step, &mut layer.bias, bias, &gradients.biases[index]);
+        self.step(adam, optimizer, gradients);
+        for (layer, target) in self.layers.iter().zip(&mut target.layers) {
+            follow(polyak, &mut target.weights, &layer.weights);
             follow(polyak, &mut target.bias, &layer.bias);
         }
     }
@@ -235,7 +192,7 @@ impl Network {
     /// Shows every parameter array in a fixed order: weights then bias, layer by layer.
     pub(crate) fn visit(&self, mut visitor: impl FnMut(&[f32])) {
         for layer in &self.layers {
-            visitor(Host::take(layer.weights()).values());
+            visitor(&layer.weights);
             visitor(&layer.bias);
         }
     }
@@ -246,10 +203,19 @@ impl Network {
         mut visitor: impl FnMut(&mut [f32]) -> Result<(), E>,
     ) -> Result<(), E> {
         for layer in &mut self.layers {
-            layer.with_weights(&mut visitor)?;
+            visitor(&mut layer.weights)?;
             visitor(&mut layer.bias)?;
         }
         Ok(())
+    }
+}
+
+impl Tape<'_> {
+    fn input_of(&self, member: usize, layer: usize) -> &Blocks {
+        match layer.checked_sub(1) {
+            None => self.input,
+            Some(hidden) => &self.hidden[member][hidden],
+        }
     }
 }
 

@@ -8,8 +8,7 @@ use serde::{Deserialize, Serialize};
 
 /// The one source of randomness: xoshiro256++, whose state a checkpoint holds.
 ///
-/// Equal states give equal indices and uniform numbers on every machine; normal numbers also depend on the
-/// platform's `ln`, `sin` and `cos`.
+/// Equal states give equal numbers on every machine.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(transparent)]
 pub struct Noise {
@@ -40,8 +39,8 @@ impl Noise {
         for pair in values.chunks_mut(2) {
             let bits = self.generator.next_u64();
             let scale = 1.0 / 4_294_967_296.0;
-            let radius = (-2.0 * (((bits >> 32) as f32 + 1.0) * scale).ln()).max(0.0).sqrt();
-            let (sine, cosine) = (TAU * ((bits as u32) as f32 * scale)).sin_cos();
+            let radius = (-2.0 * libm::logf(((bits >> 32) as f32 + 1.0) * scale)).max(0.0).sqrt();
+            let (sine, cosine) = libm::sincosf(TAU * ((bits as u32) as f32 * scale));
             pair[0] = radius * cosine;
             if let Some(second) = pair.get_mut(1) {
                 *second = radius * sine;

@@ -4,21 +4,6 @@
 
 use crate::replay::Batch;
 
-/// Rows of observation and action side by side: the critics' input, [batch, observation + action].
-pub(crate) fn join(
-    observations: &[f32],
-    actions: &[f32],
-    observation_dim: usize,
-    action_dim: usize,
-) -> Vec<f32> {
-    let mut rows = Vec::with_capacity(observations.len() + actions.len());
-    for (o, a) in observations.chunks_exact(observation_dim).zip(actions.chunks_exact(action_dim)) {
-        rows.extend_from_slice(o);
-        rows.extend_from_slice(a);
-    }
-    rows
-}
-
 /// y = r + γ·(1 − terminal)·(min(Q′₁, Q′₂) − α ln π′).
 ///
 /// `next_q` is [2, batch], of the target critics at the next observation and an action π′ drew there. A terminal
@@ -119,10 +104,5 @@ mod tests {
         let (values, mask) = smaller(&[1.0, 5.0, 2.0, 3.0, 4.0, 2.0]);
         assert_eq!(values, [1.0, 4.0, 2.0]);
         assert_eq!(mask, [1.0, 0.0, 1.0, 0.0, 1.0, 0.0]);
-    }
-
-    #[test]
-    fn observation_and_action_lie_side_by_side() {
-        assert_eq!(join(&[1.0, 2.0, 3.0, 4.0], &[9.0, 8.0], 2, 1), [1.0, 2.0, 9.0, 3.0, 4.0, 8.0]);
     }
 }

@@ -2,11 +2,11 @@
 
 use serde::{Deserialize, Serialize};
 
-use crate::lanes::apply_layer;
+use crate::lanes::{apply_layer, follow};
 use crate::network::Network;
 use crate::wire::{CheckpointError, Format, Frame, Unframe, check_finite};
 
-const FORMAT: Format = Format { magic: *b"sac-plcy", name: "policy", version: 1 };
+const FORMAT: Format = Format { magic: *b"sac-plcy", name: "policy", version: 1, upgrade: |_, _| () };
 
 /// The actor's weights on the host, and its action without noise: tanh of the mean.
 ///
@@ -64,6 +64,18 @@ impl Policy {
         });
     }
 
+    /// Takes over `share` of every weight of `actor`; all of it bit for bit if the share is 1.
+    pub(crate) fn follow(&mut self, share: f32, actor: &Self) {
+        for (layer, actor) in self.layers.iter_mut().zip(&actor.layers) {
+            if share < 1.0 {
+                follow(share, &mut layer.weights, &actor.weights);
+                follow(share, &mut layer.bias, &actor.bias);
+            } else {
+                layer.clone_from(actor);
+            }
+        }
+    }
+
     fn zero(widths: Vec<usize>) -> Self {
         let layers = widths
             .windows(2)
@@ -92,8 +104,25 @@ impl Policy {
         assert_eq!(action.len(), self.action_dim(), "length of the action");
         let head = self.head(observation);
         for (a, mean) in action.iter_mut().zip(head) {
-            *a = mean.tanh();
+            *a = libm::tanhf(mean);
         }
+    }
+
+    /// Shows every parameter array in the order of [`Network::visit`], to change it; stops at the first error.
+    pub(crate) fn visit_mut<E>(
+        &mut self,
+        mut visitor: impl FnMut(&mut [f32]) -> Result<(), E>,
+    ) -> Result<(), E> {
+        for layer in &mut self.layers {
+            visitor(&mut layer.weights)?;
+            visitor(&mut layer.bias)?;
+        }
+        Ok(())
+    }
+
+    /// Weights [input, output] and bias of each layer.
+    pub(crate) fn layers(&self) -> impl Iterator<Item = (&[f32], &[f32])> {
+        self.layers.iter().map(|layer| (layer.weights.as_slice(), layer.bias.as_slice()))
     }
 
     /// Mean and ln σ, not yet clamped: [2·action].

@@ -31,7 +31,7 @@ pub(crate) fn log_tanh_slope(u: f32) -> f32 {
 
 /// ln(1 + eˣ) without overflow.
 fn softplus(x: f32) -> f32 {
-    x.max(0.0) + (-x.abs()).exp().ln_1p()
+    x.max(0.0) + libm::log1pf(libm::expf(-x.abs()))
 }
 
 /// Draws one action per row.
@@ -39,7 +39,7 @@ fn softplus(x: f32) -> f32 {
 /// Shapes: head [batch, 2·action], noise [batch, action].
 /// ln π(a) = Σ [−ε²/2 − ln σ − ½ ln 2π − ln(1 − tanh²u)].
 pub(crate) fn sample(head: &[f32], noise: &[f32], action_dim: usize, bounds: StdBounds) -> Sampled {
-    let half_log_two_pi = 0.5 * (2.0 * PI).ln();
+    let half_log_two_pi = 0.5 * libm::logf(2.0 * PI);
     let mut actions = Vec::with_capacity(noise.len());
     let mut log_probabilities = Vec::with_capacity(noise.len() / action_dim);
     for (head, noise) in head.chunks_exact(2 * action_dim).zip(noise.chunks_exact(action_dim)) {
@@ -47,8 +47,8 @@ pub(crate) fn sample(head: &[f32], noise: &[f32], action_dim: usize, bounds: Std
         let mut log_probability = 0.0;
         for ((mean, log_std), epsilon) in mean.iter().zip(log_std).zip(noise) {
             let log_std = log_std.clamp(bounds.min, bounds.max);
-            let u = mean + log_std.exp() * epsilon;
-            actions.push(u.tanh());
+            let u = mean + libm::expf(log_std) * epsilon;
+            actions.push(libm::tanhf(u));
             log_probability -= 0.5 * epsilon * epsilon + log_std + half_log_two_pi + log_tanh_slope(u);
         }
         log_probabilities.push(log_probability);
@@ -80,7 +80,7 @@ pub(crate) fn head_gradient(
             let log_std = head[action_dim + j];
             if (bounds.min..=bounds.max).contains(&log_std) {
                 gradient[row * 2 * action_dim + action_dim + j] =
-                    by_u * log_std.exp() * noise[at] - scale * entropy_temperature;
+                    by_u * libm::expf(log_std) * noise[at] - scale * entropy_temperature;
             }
         }
     }

@@ -14,12 +14,12 @@ pub(crate) struct Temperature {
 
 impl Temperature {
     pub(crate) fn new(initial: f64) -> Self {
-        Self { log: initial.ln(), moments: [0.0; 2], steps: 0 }
+        Self { log: libm::log(initial), moments: [0.0; 2], steps: 0 }
     }
 
     /// α.
     pub(crate) fn value(&self) -> f64 {
-        self.log.exp()
+        libm::exp(self.log)
     }
 
     /// One Adam step on J = −ln α·(mean ln π + target entropy); returns J before the step.

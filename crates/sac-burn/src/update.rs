@@ -4,9 +4,10 @@ use tracing::trace_span;
 
 use crate::adam::Adam;
 use crate::agent::Agent;
+use crate::blocks::Blocks;
 use crate::losses::Losses;
 use crate::noise::Noise;
-use crate::objective::{critic_loss, join, mean, smaller, targets};
+use crate::objective::{critic_loss, mean, smaller, targets};
 use crate::replay::Batch;
 use crate::squash::{head_gradient, sample};
 
@@ -32,7 +33,7 @@ impl Agent {
         self.update_actor(&batch, &adam, &mut losses);
         let target_entropy = self.config.target_entropy(self.action_dim);
         losses.temperature = self.temperature.step(&adam, -losses.entropy, target_entropy);
-        self.refresh_policy();
+        self.follow_actor();
         self.batch = batch;
         self.updates += 1;
         Some(losses)
@@ -41,18 +42,19 @@ impl Agent {
     fn update_critics(&mut self, batch: &Batch, adam: &Adam, losses: &mut Losses) {
         let spec = self.config.spec();
         let noise = normal(&mut self.noise, spec.batch_size * self.action_dim);
-        let head = self.actor.forward(batch.next_observations.clone());
+        let head = self.actor.forward(&self.actor_input(&batch.next_observations));
         let next = sample(&head, &noise, self.action_dim, self.std_bounds());
-        let next_q = self.targets.forward(self.critic_input(&batch.next_observations, &next.actions));
+        let next_q = self.targets.forward(&self.critic_input(&batch.next_observations, &next.actions));
         let alpha = losses.entropy_temperature as f32;
         let targets = targets(batch, &next_q, &next.log_probabilities, spec.discount as f32, alpha);
 
-        let tape = self.critics.forward_taped(self.critic_input(&batch.observations, &batch.actions));
+        let input = self.critic_input(&batch.observations, &batch.actions);
+        let tape = self.critics.forward_taped(&input);
         losses.mean_q = mean(&tape.output);
         losses.mean_target = mean(&targets);
         let (loss, slope) = critic_loss(&tape.output, &targets);
         losses.critic = loss;
-        let gradients = self.critics.gradients(tape, slope);
+        let gradients = self.critics.gradients(&tape, &slope);
         let polyak = spec.polyak as f32;
         let optimizer = &mut self.critic_optimizer;
         self.critics.step_followed(adam, optimizer, &gradients, &mut self.targets, polyak);
@@ -60,14 +62,15 @@ impl Agent {
 
     fn update_actor(&mut self, batch: &Batch, adam: &Adam, losses: &mut Losses) {
         let noise = normal(&mut self.noise, self.config.spec().batch_size * self.action_dim);
-        let tape = self.actor.forward_taped(batch.observations.clone());
+        let input = self.actor_input(&batch.observations);
+        let tape = self.actor.forward_taped(&input);
         let bounds = self.std_bounds();
         let drawn = sample(&tape.output, &noise, self.action_dim, bounds);
-        let input = self.critic_input(&batch.observations, &drawn.actions);
-        let critic_tape = self.critics.forward_taped(input);
+        let critic_input = self.critic_input(&batch.observations, &drawn.actions);
+        let critic_tape = self.critics.forward_taped(&critic_input);
         let (values, mask) = smaller(&critic_tape.output);
         let inputs = self.observation_dim + self.action_dim;
-        let value_slope = self.critics.input_gradient(critic_tape, mask, self.observation_dim, inputs);
+        let value_slope = self.critics.input_gradient(&critic_tape, &mask, self.observation_dim, inputs);
 
         let mean_log_probability = mean(&drawn.log_probabilities);
         losses.entropy = -mean_log_probability;
@@ -75,12 +78,17 @@ impl Agent {
         let alpha = losses.entropy_temperature as f32;
         let (head, actions) = (&tape.output, &drawn.actions);
         let slope = head_gradient(head, &noise, actions, &value_slope, alpha, self.action_dim, bounds);
-        let gradients = self.actor.gradients(tape, slope);
+        let gradients = self.actor.gradients(&tape, &slope);
         self.actor.step(adam, &mut self.actor_optimizer, &gradients);
     }
 
-    fn critic_input(&self, observations: &[f32], actions: &[f32]) -> Vec<f32> {
-        join(observations, actions, self.observation_dim, self.action_dim)
+    fn actor_input(&self, observations: &[f32]) -> Blocks {
+        Blocks::from_rows(&[(observations, self.observation_dim)])
+    }
+
+    /// Observation and action side by side.
+    fn critic_input(&self, observations: &[f32], actions: &[f32]) -> Blocks {
+        Blocks::from_rows(&[(observations, self.observation_dim), (actions, self.action_dim)])
     }
 }
 

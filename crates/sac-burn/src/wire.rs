@@ -33,11 +33,11 @@ pub enum CheckpointError {
         found: [u8; 8],
     },
     /// Written by another version of this crate.
-    #[error("format version {found} is not supported, this is version {supported}")]
+    #[error("format version {found} is not supported, this program reads versions 1 to {supported}")]
     UnsupportedVersion {
         /// Version of the file.
         found: u32,
-        /// Version that can be read.
+        /// Newest version that can be read.
         supported: u32,
     },
     /// The stream ends early.
@@ -95,7 +95,10 @@ pub(crate) fn check_finite(part: &'static str, values: &[f32]) -> Result<(), Che
 pub(crate) struct Format {
     pub(crate) magic: [u8; 8],
     pub(crate) name: &'static str,
+    /// The version that is written; it and all before it can be read.
     pub(crate) version: u32,
+    /// Brings the header of an earlier version up to the present one.
+    pub(crate) upgrade: fn(u32, &mut serde_json::Value),
 }
 
 /// Writes a frame; [`Frame::finish`] must follow the last number.
@@ -166,6 +169,7 @@ impl<'a, W: Write> Frame<'a, W> {
 pub(crate) struct Unframe<'a, R: Read> {
     input: &'a mut R,
     hasher: Hasher,
+    version: u32,
     /// Bytes of the frame not yet read.
     left: u64,
     buffer: Vec<u8>,
@@ -177,15 +181,16 @@ impl<'a, R: Read> Unframe<'a, R> {
         input: &'a mut R,
         format: Format,
     ) -> Result<(Self, H), CheckpointError> {
-        let mut frame = Self { input, hasher: Hasher::new(), left: 24, buffer: Vec::new() };
+        let mut frame = Self { input, hasher: Hasher::new(), version: 0, left: 24, buffer: Vec::new() };
         let mut magic = [0; 8];
         frame.bytes(&mut magic, "magic")?;
         if magic != format.magic {
             return Err(CheckpointError::WrongMagic { expected: format.name, found: magic });
         }
-        let version = frame.integer("version")?;
-        if version != format.version {
-            return Err(CheckpointError::UnsupportedVersion { found: version, supported: format.version });
+        frame.version = frame.integer("version")?;
+        if !(1..=format.version).contains(&frame.version) {
+            let (found, supported) = (frame.version, format.version);
+            return Err(CheckpointError::UnsupportedVersion { found, supported });
         }
         let mut length = [0; 8];
         frame.bytes(&mut length, "length")?;
@@ -205,8 +210,15 @@ impl<'a, R: Read> Unframe<'a, R> {
         let mut header = vec![0; header_length];
         frame.bytes(&mut header, "header")?;
         frame.checksum("header")?;
-        let header = serde_json::from_slice(&header).map_err(CheckpointError::Header)?;
+        let mut header = serde_json::from_slice(&header).map_err(CheckpointError::Header)?;
+        (format.upgrade)(frame.version, &mut header);
+        let header = serde_json::from_value(header).map_err(CheckpointError::Header)?;
         Ok((frame, header))
+    }
+
+    /// Version of the file.
+    pub(crate) fn version(&self) -> u32 {
+        self.version
     }
 
     /// Refuses the file unless exactly `expected` bytes of numbers are left.

@@ -40,7 +40,7 @@ fn the_cause_is_named() {
     assert_eq!(foreign, "not a file of kind \"agent checkpoint\": it begins with \"a photog\"");
     let mut version = bytes.clone();
     version[8] = 9;
-    assert_eq!(load(&version), "format version 9 is not supported, this is version 1");
+    assert_eq!(load(&version), "format version 9 is not supported, this program reads versions 1 to 2");
     let mut number = bytes.clone();
     let at = bytes.len() - 100;
     number[at] ^= 1;

@@ -215,6 +215,16 @@ pub(crate) const COMMANDS: &[Command] = &[
         example: "cargo xtask ablation --out docs/figures",
     },
     Command {
+        name: "search",
+        summary: "Train and judge the candidates for the default configuration; goes on where it stopped",
+        flags: &[
+            optional("space", "FILE", "what is tried, instead of assets/search/space.ron"),
+            optional("out", "FILE", "write the table there as well, and its rows as JSON beside it"),
+            switch("quiet", "no progress on standard error"),
+        ],
+        example: "cargo xtask search --out docs/search.md",
+    },
+    Command {
         name: "record",
         summary: "Record one episode of a trained policy, for scenarios",
         flags: &[

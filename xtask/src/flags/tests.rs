@@ -31,6 +31,7 @@ fn cargo_line(line: &str) -> String {
         Invocation::Tune(flags) => flags.call(),
         Invocation::Ablation(flags) => flags.call(),
         Invocation::Record(flags) => flags.call(),
+        Invocation::Search(flags) => flags.call(),
         Invocation::Help(_) | Invocation::Doctor | Invocation::Footprint | Invocation::Tidy => {
             panic!("{line} runs no child")
         }

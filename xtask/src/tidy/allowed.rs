@@ -53,6 +53,7 @@ pub(super) const ALLOWED: &[Allowed] = &[
         normal: &[
             "burn",
             "crc32fast",
+            "libm",
             "pulp",
             "rand_core",
             "rand_xoshiro",

@@ -1,4 +1,4 @@
-//! Commands that learn or use a policy: `train`, `eval`, `record`, `figures` and `report`.
+//! Commands that learn or use a policy: `train`, `eval`, `record`, `search`, `figures` and `report`.
 #![forbid(unsafe_code)]
 
 use std::path::{Path, PathBuf};
@@ -15,7 +15,7 @@ use runner::machine::Machine;
 use runner::progress::Display;
 use runner::stage::Stage;
 use runner::training::{self, Request, Training};
-use runner::{actions, checkpoint, command, store};
+use runner::{actions, checkpoint, command, search, store};
 #[cfg(feature = "figures")]
 use runner::{gallery, report};
 
@@ -41,9 +41,12 @@ fn dispatch(command: &str, words: Vec<String>) -> Result<String> {
         "train" => train(Arguments::parse(words, &["all", "resume", "quiet", "plain"])?),
         "eval" => eval(Arguments::parse(words, &[])?),
         "record" => record(Arguments::parse(words, &[])?),
+        "search" => search(Arguments::parse(words, &["quiet"])?),
         "figures" => figures(Arguments::parse(words, &[])?),
         "report" => report(Arguments::parse(words, &["open"])?),
-        _ => bail!("no command is called '{command}'; there are train, eval, record, figures and report"),
+        _ => bail!(
+            "no command is called '{command}'; there are train, eval, record, search, figures and report"
+        ),
     }
 }
 
@@ -120,6 +123,22 @@ fn record(mut arguments: Arguments) -> Result<String> {
     let take = Take { stage: region, seed: seed.unwrap_or(header.config.seed), episode };
     let origin = format!("best policy of stage {stage}, trained with seed {}", header.config.seed);
     actions::record(agent.policy(), &header.scaling, &machine, take, &origin, &out)
+}
+
+fn search(mut arguments: Arguments) -> Result<String> {
+    let space: Option<PathBuf> = arguments.optional("space")?;
+    let out: Option<PathBuf> = arguments.optional("out")?;
+    let display = if arguments.switch("quiet")? { Display::Quiet } else { Display::Automatic };
+    arguments.finish()?;
+    let space = space.unwrap_or_else(|| search::SPACE.into());
+    let rows = search::search(&space, display)?;
+    let table = search::table(&rows);
+    if let Some(path) = out {
+        let json = serde_json::to_string_pretty(&rows)? + "\n";
+        store::write_whole(&path.with_extension("json"), json.as_bytes())?;
+        store::write_whole(&path, search::page(&space, &table).as_bytes())?;
+    }
+    Ok(table)
 }
 
 /// The best checkpoint of a run's stage.

@@ -7,7 +7,7 @@ use anyhow::{Context, Result};
 use serde::Serialize;
 use serde_json::Value;
 
-use crate::config::{ConfigSpec, run_folder};
+use crate::config::{ConfigSpec, Goal, run_folder};
 use crate::stage::Stage;
 use crate::store;
 
@@ -134,7 +134,8 @@ fn found(folder: &Path, blank: &Entry) -> Result<Entry> {
         episodes: summary["episodes"].as_u64().unwrap_or(0),
         success_rate: summary["success_rate"].as_f64().unwrap_or(0.0),
     });
-    let confirmed = last["confirmed"].as_f64().is_some_and(|rate| rate >= config.curriculum.confirmed_at);
+    let goal = config.curriculum.of(blank.stage);
+    let confirmed = last["confirmed"].as_f64().is_some_and(|rate| rate >= goal.confirmed_at);
     let state = match (is_closed, confirmed) {
         (true, true) => State::Mastered,
         (true, false) => State::Ended,
@@ -147,7 +148,7 @@ fn found(folder: &Path, blank: &Entry) -> Result<Entry> {
         steps: count("step"),
         success_rate: last["success_rate"].as_f64().unwrap_or(0.0),
         evaluation,
-        next: next(&blank.run, blank.stage, state, episodes, &config),
+        next: next(&blank.run, blank.stage, state, (episodes, count("step")), goal),
         ..blank.clone()
     })
 }
@@ -169,7 +170,7 @@ fn json(path: &Path) -> Result<Option<Value>> {
 }
 
 /// The command that goes on with a stage.
-fn next(run: &str, stage: Stage, state: State, episodes: u64, config: &ConfigSpec) -> Option<String> {
+fn next(run: &str, stage: Stage, state: State, (episodes, steps): (u64, u64), goal: &Goal) -> Option<String> {
     let train = |stage: Stage| format!("cargo xtask train --stage {stage} --run {run}");
     let has_checkpoint = || run_folder(run, stage).join("checkpoints").join("latest").exists();
     match state {
@@ -178,7 +179,7 @@ fn next(run: &str, stage: Stage, state: State, episodes: u64, config: &ConfigSpe
             let after = Stage::ALL.into_iter().find(|later| later.before() == Some(stage))?;
             (!run_folder(run, after).exists()).then(|| train(after))
         }
-        State::Ended if episodes >= config.curriculum.max_episodes => {
+        State::Ended if episodes >= goal.max_episodes || steps >= goal.max_steps => {
             Some(format!("{} --resume --episodes {}", train(stage), 2 * episodes))
         }
         State::Open if !has_checkpoint() => {
