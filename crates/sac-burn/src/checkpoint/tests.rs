@@ -103,3 +103,52 @@ fn an_agent_that_has_diverged_is_neither_saved_nor_read() {
     let error = Agent::load(&mut bytes.as_slice()).unwrap_err();
     assert_eq!(error.to_string(), "not finite: a number of the entropy temperature is NaN");
 }
+
+/// What version 1 of this format wrote: no averaged policy, neither its share nor its weights.
+fn version_1(agent: &Agent) -> Vec<u8> {
+    let mut bytes = Vec::new();
+    agent.save(&mut bytes).unwrap();
+    let length = u32::from_le_bytes(bytes[20..24].try_into().unwrap()) as usize;
+    let mut header: Value = serde_json::from_slice(&bytes[24..24 + length]).unwrap();
+    header["config"].as_object_mut().unwrap().remove("policy_share").unwrap();
+    let numbers = &bytes[24 + length + 4..bytes.len() - 4];
+    let networks = |network: &crate::network::Network| {
+        let mut count = 0;
+        network.visit(|values| count += 4 * values.len());
+        count
+    };
+    let actor = networks(&agent.actor);
+    let policy = 24 + actor + 2 * networks(&agent.critics);
+    let kept = [&numbers[..policy], &numbers[policy + actor..]].concat();
+    let mut old = Vec::new();
+    let format = Format { version: 1, ..FORMAT };
+    let mut frame = Frame::begin(&mut old, format, &header, kept.len() as u64).unwrap();
+    for bytes in kept.chunks_exact(4) {
+        frame.numbers(&[f32::from_le_bytes(bytes.try_into().unwrap())]).unwrap();
+    }
+    frame.finish().unwrap();
+    old
+}
+
+#[test]
+fn a_checkpoint_of_version_1_continues_with_its_actor_as_the_policy() {
+    let mut agent = Agent::new(Config::try_from(spec()).unwrap(), 2, 1, 1).unwrap();
+    for step in 0..6 {
+        let transition = crate::Transition {
+            observation: &[0.1 * step as f32, 1.0],
+            action: &[0.5],
+            reward: 1.0,
+            next_observation: &[0.2, 0.3],
+            outcome: crate::Outcome::Continues,
+        };
+        agent.remember(&transition).unwrap();
+        agent.update();
+    }
+    let mut resumed = Agent::load(&mut version_1(&agent).as_slice()).unwrap();
+    let (mut ours, mut theirs) = (Vec::new(), Vec::new());
+    agent.save(&mut ours).unwrap();
+    resumed.save(&mut theirs).unwrap();
+    assert!(ours == theirs, "the policy of this configuration is the actor");
+    assert_eq!(resumed.update(), agent.update());
+    assert_eq!(resumed.policy(), agent.policy());
+}

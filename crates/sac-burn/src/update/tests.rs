@@ -204,3 +204,26 @@ fn an_update_agrees_with_automatic_differentiation_of_the_definitions() {
     assert!((found - log_alpha).abs() < 1e-6, "ln α {found} against {log_alpha}");
     assert_eq!(agent.noise, generator, "the update draws something else as well");
 }
+
+fn policy(agent: &Agent) -> Vec<Vec<f32>> {
+    agent.policy.layers().flat_map(|(weights, bias)| [weights.to_vec(), bias.to_vec()]).collect()
+}
+
+#[test]
+fn the_policy_follows_the_actor_by_its_share_and_is_the_actor_with_a_share_of_one() {
+    let mut agent = agent();
+    agent.update().unwrap();
+    assert_eq!(policy(&agent), parameters(&agent.actor));
+
+    let spec = ConfigSpec { policy_share: 0.25, ..agent.config().spec().clone() };
+    agent.config = Config::try_from(spec).unwrap();
+    let before = policy(&agent);
+    agent.update().unwrap();
+    let actor = parameters(&agent.actor);
+    let expected: Vec<Vec<f32>> = before
+        .iter()
+        .zip(&actor)
+        .map(|(p, a)| p.iter().zip(a).map(|(p, a)| p + 0.25 * (a - p)).collect())
+        .collect();
+    check_close("policy", &policy(&agent), &expected, &before);
+}
