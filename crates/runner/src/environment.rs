@@ -139,7 +139,7 @@ impl Environment {
         self.look()?;
         let machine = &self.machine;
         let task = machine.task();
-        let speed = norm(self.tip.velocity);
+        let speed = self.speed();
         let reached = self.distance() <= task.reach_distance && speed < task.reach_speed;
         let ending = if reached {
             Some(Ending::Reached)
@@ -184,6 +184,12 @@ impl Environment {
     #[must_use]
     pub fn distance(&self) -> f64 {
         norm(std::array::from_fn(|axis| self.tip.position[axis] - self.target[axis]))
+    }
+
+    /// Speed of the tip [m/s].
+    #[must_use]
+    pub fn speed(&self) -> f64 {
+        norm(self.tip.velocity)
     }
 
     /// Tip position in the world \[m\].

@@ -39,13 +39,22 @@ pub struct Times {
     pub p95: Option<f64>,
 }
 
-/// Mean and largest distance \[m\].
-#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+/// Mean and largest distance \[m\] or speed [m/s].
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct Distances {
     /// Arithmetic mean.
     pub mean: Option<f64>,
     /// The largest.
     pub max: Option<f64>,
+}
+
+/// How the tip arrives.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
+pub struct Arrival {
+    /// Distance of tip and target \[m\].
+    pub tip_error_m: Distances,
+    /// Speed of the tip [m/s].
+    pub tip_speed_m_s: Distances,
 }
 
 /// The largest alone \[m\].
@@ -86,6 +95,9 @@ pub struct Summary {
     pub time_to_reach_s: Times,
     /// Distance of tip and target when the episode ended, of all episodes.
     pub tip_error_m: Distances,
+    /// Distance and speed of the tip when the target was reached, of the episodes that did.
+    #[serde(default)] // files of earlier versions do not say
+    pub at_success: Arrival,
     /// Limits that did not hold.
     pub violations: Violations,
     /// Worst margins of the reference to the actuators' limits, over all joints, relative and exact.
@@ -116,6 +128,7 @@ struct Played {
     reached: bool,
     steps: u32,
     tip_error: f64,
+    tip_speed: f64,
 }
 
 /// Plays the plan's episodes with the policy's mean action.
@@ -179,15 +192,22 @@ fn play(
             }
         };
         let (reached, steps) = (ending == Ending::Reached, environment.steps());
-        played.push(Played { number, reached, steps, tip_error: environment.distance() });
+        let (tip_error, tip_speed) = (environment.distance(), environment.speed());
+        played.push(Played { number, reached, steps, tip_error, tip_speed });
     }
     Ok((played, environment.take_evidence()))
+}
+
+fn distances(sample: &[f64]) -> Distances {
+    Distances { mean: statistics::mean(sample), max: statistics::maximum(sample) }
 }
 
 fn summarise(played: &[Played], evidence: &Evidence, machine: &Machine) -> Summary {
     let period = machine.rates().policy_period();
     let times: Vec<f64> = played.iter().filter(|e| e.reached).map(|e| f64::from(e.steps) * period).collect();
     let errors: Vec<f64> = played.iter().map(|e| e.tip_error).collect();
+    let at_success =
+        |of: fn(&Played) -> f64| distances(&played.iter().filter(|e| e.reached).map(of).collect::<Vec<_>>());
     let joint_errors = machine.joints().iter().zip(&evidence.joints).map(|(joint, seen)| {
         let error =
             TrackingError { position_max: seen.position_error_max, velocity_max: seen.velocity_error_max };
@@ -202,7 +222,11 @@ fn summarise(played: &[Played], evidence: &Evidence, machine: &Machine) -> Summa
             median: statistics::quantile(&times, 0.5),
             p95: statistics::quantile(&times, 0.95),
         },
-        tip_error_m: Distances { mean: statistics::mean(&errors), max: statistics::maximum(&errors) },
+        tip_error_m: distances(&errors),
+        at_success: Arrival {
+            tip_error_m: at_success(|episode| episode.tip_error),
+            tip_speed_m_s: at_success(|episode| episode.tip_speed),
+        },
         violations: Violations {
             reference: evidence.reference_violations,
             actual: evidence.actual_violations,

@@ -1,23 +1,22 @@
 //! The search for what trains best: candidates by name, each trained with several seeds and judged by one table.
 
+use std::cmp::Ordering;
 use std::fmt::Write as _;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
 use anyhow::{Context, Result, ensure};
-use sac_burn::Policy;
 use serde::{Deserialize, Serialize};
 
 use crate::checkpoint;
 use crate::config::{ConfigSpec, read_ron, run_folder};
 use crate::draw::Purpose;
-use crate::evaluation::{self, Plan, Violations};
+use crate::evaluation::{self, Plan, Summary, Violations};
 use crate::machine::Machine;
-use crate::observation::Scaling;
 use crate::progress::Display;
 use crate::stage::Stage;
-use crate::statistics;
 use crate::training::{self, Request, Training};
+use crate::{statistics, store};
 
 /// What is searched if no other file is named.
 pub const SPACE: &str = "assets/search/space.ron";
@@ -28,6 +27,8 @@ pub const SPACE: &str = "assets/search/space.ron";
 pub struct Space {
     /// Version of the file's format.
     pub schema: u32,
+    /// Beginning of the runs' names.
+    pub name: String,
     /// The configuration that the candidates change.
     pub base: PathBuf,
     /// Seeds with which each candidate is trained.
@@ -85,12 +86,13 @@ pub struct Row {
     pub steps: [u64; 3],
     /// True for each stage that a confirmation ended.
     pub mastered: [bool; 3],
-    /// Share of the judging episodes that reached the target.
-    pub success_rate: f64,
-    /// Mean time to reach the target \[s\].
-    pub time_to_reach_s: Option<f64>,
-    /// Limits that did not hold while judging.
+    /// Time of the training, its confirmations and closing evaluations included \[s\]; of the last start alone if it was
+    /// interrupted.
+    pub seconds: f64,
+    /// Limits that did not hold in any stage's training and closing evaluation, and while judging.
     pub violations: Violations,
+    /// What the judging episodes found.
+    pub judged: Summary,
 }
 
 impl Candidate {
@@ -156,11 +158,12 @@ pub fn search(path: &Path, display: Display) -> Result<Vec<Row>> {
 
 /// Trains a candidate through all stages, as far as that was not done before, and judges the last policy.
 fn judge(candidate: &str, config: &ConfigSpec, space: &Space, display: Display) -> Result<Row> {
-    let run = format!("search-{candidate}-{}", config.seed);
-    let (mut steps, mut mastered) = ([0; 3], [false; 3]);
+    let run = format!("{}-{candidate}-{}", space.name, config.seed);
+    let (mut steps, mut mastered, mut seconds) = ([0; 3], [false; 3], 0.0);
+    let mut violations = Violations { reference: 0, actual: 0 };
     for (index, stage) in Stage::ALL.into_iter().enumerate() {
         let folder = run_folder(&run, stage);
-        if !folder.join("eval.json").exists() {
+        if !folder.join("timing.json").exists() {
             let request = Request { run: run.clone(), stage, episodes: None, display };
             let training = if training::latest(&folder).exists() {
                 Training::resume(&request, Some(config), None)?
@@ -171,28 +174,28 @@ fn judge(candidate: &str, config: &ConfigSpec, space: &Space, display: Display) 
         }
         let (header, _) = checkpoint::read(&training::latest(&folder))?;
         (steps[index], mastered[index]) = (header.steps, header.mastery.mastered);
+        let json = |name: &str| -> Result<serde_json::Value> {
+            let path = folder.join(name);
+            serde_json::from_str(&store::read_text(&path)?).with_context(|| path.display().to_string())
+        };
+        seconds += json("timing.json")?["total"].as_f64().unwrap_or(f64::NAN);
+        let certificate = json("certificate.json")?;
+        violations.reference += certificate["violations"]["reference"].as_u64().unwrap_or(0);
+        violations.actual += certificate["violations"]["actual"].as_u64().unwrap_or(0);
     }
     let (header, agent) = checkpoint::read(&training::best(&run_folder(&run, Stage::Orange)))?;
-    let (success_rate, time_to_reach_s, violations) =
-        success(agent.policy(), &header.scaling, config, space)?;
-    let candidate = candidate.to_owned();
-    Ok(Row { candidate, seed: config.seed, steps, mastered, success_rate, time_to_reach_s, violations })
-}
-
-fn success(
-    policy: &Policy,
-    scaling: &Scaling,
-    config: &ConfigSpec,
-    space: &Space,
-) -> Result<(f64, Option<f64>, Violations)> {
     let machine = Arc::new(Machine::load(config)?);
-    let seed = config.seed + space.judge;
-    let plan = Plan { stage: Stage::Orange, episodes: space.episodes, seed, purpose: Purpose::Evaluation };
-    let summary = evaluation::evaluate(policy, scaling, &machine, plan)?.summary;
-    Ok((summary.success_rate, summary.time_to_reach_s.mean, summary.violations))
+    let (episodes, seed) = (space.episodes, config.seed + space.judge);
+    let plan = Plan { stage: Stage::Orange, episodes, seed, purpose: Purpose::Evaluation };
+    let judged = evaluation::evaluate(agent.policy(), &header.scaling, &machine, plan)?.summary;
+    violations.reference += judged.violations.reference;
+    violations.actual += judged.violations.actual;
+    let candidate = candidate.to_owned();
+    Ok(Row { candidate, seed: config.seed, steps, mastered, seconds, violations, judged })
 }
 
-/// The results as a Markdown table, a line for each candidate, the best first: by the worst seed, then by the mean.
+/// The results as a Markdown table: each candidate with its seeds, the best first, by the worst seed and then by the
+/// mean.
 #[must_use]
 pub fn table(rows: &[Row]) -> String {
     let mut groups: Vec<Vec<&Row>> = Vec::new();
@@ -202,49 +205,72 @@ pub fn table(rows: &[Row]) -> String {
             None => groups.push(vec![row]),
         }
     }
-    let worst = |group: &[&Row]| group.iter().map(|row| row.success_rate).fold(1.0, f64::min);
-    let mean = |group: &[&Row], of: fn(&Row) -> f64| {
-        statistics::mean(&group.iter().map(|row| of(row)).collect::<Vec<_>>()).unwrap_or(f64::NAN)
-    };
     groups.sort_by(|a, b| {
-        let key = |group: &[&Row]| (worst(group), mean(group, |row| row.success_rate));
-        key(b).partial_cmp(&key(a)).unwrap_or(std::cmp::Ordering::Equal)
+        let key = |group: &[&Row]| {
+            let rates = rates(group);
+            (rates.iter().copied().fold(1.0, f64::min), statistics::mean(&rates))
+        };
+        key(b).partial_cmp(&key(a)).unwrap_or(Ordering::Equal)
     });
     let mut text = String::from(
-        "| candidate | seeds | orange, worst seed | mean | time to reach | steps purple + yellow + orange | violations |\n\
-         |---|---|---|---|---|---|---|\n",
+        "| candidate | seed | orange reached | time to reach | tip error, speed at success | steps (purple, yellow, \
+         orange) | training | ranges narrowed | violations |\n|---|---|---|---|---|---|---|---|---|\n",
     );
-    for group in &groups {
-        let steps: Vec<String> = (0..3)
-            .map(|stage| {
-                let sum: u64 = group.iter().map(|row| row.steps[stage]).sum();
-                (sum / group.len() as u64).to_string()
-            })
-            .collect();
-        let violations: u64 = group.iter().map(|row| row.violations.reference + row.violations.actual).sum();
+    for row in groups.iter().flatten() {
+        text += &line(row);
+    }
+    text.push('\n');
+    for group in groups {
+        let rates = rates(&group);
         let _ = writeln!(
             text,
-            "| {} | {} | {:.2} % | {:.2} % | {:.2} s | {} | {violations} |",
+            "- {}: worst seed {:.2} %, mean {:.2} %, interquartile mean {:.2} %",
             group[0].candidate,
-            group.len(),
-            100.0 * worst(group),
-            100.0 * mean(group, |row| row.success_rate),
-            mean(group, |row| row.time_to_reach_s.unwrap_or(f64::NAN)),
-            steps.join(" + "),
+            100.0 * rates.iter().copied().fold(1.0, f64::min),
+            100.0 * statistics::mean(&rates).unwrap_or(f64::NAN),
+            100.0 * statistics::interquartile_mean(&rates).unwrap_or(f64::NAN),
         );
     }
     text
 }
 
+fn rates(group: &[&Row]) -> Vec<f64> {
+    group.iter().map(|row| row.judged.success_rate).collect()
+}
+
+fn line(row: &Row) -> String {
+    let Row { candidate, seed, judged, violations, .. } = row;
+    let number = |value: Option<f64>| value.unwrap_or(f64::NAN);
+    let steps: Vec<String> = row
+        .steps
+        .iter()
+        .zip(row.mastered)
+        .map(|(steps, mastered)| if mastered { steps.to_string() } else { format!("{steps}, not mastered") })
+        .collect();
+    format!(
+        "| {candidate} | {seed} | {:.2} % | {:.2} s | {:.1} mm, {:.0} mm/s | {} ({}) | {:.0} s | {:.1} % | {} + {} |\n",
+        100.0 * judged.success_rate,
+        number(judged.time_to_reach_s.mean),
+        1e3 * number(judged.at_success.tip_error_m.mean),
+        1e3 * number(judged.at_success.tip_speed_m_s.mean),
+        row.steps.iter().sum::<u64>(),
+        steps.join(", "),
+        row.seconds,
+        100.0 * judged.intervention_rate,
+        violations.reference,
+        violations.actual,
+    )
+}
+
 /// The table with what it is of, for `docs/`.
 #[must_use]
-pub fn page(space: &Path, table: &str) -> String {
+pub fn page(path: &Path, out: &Path, table: &str) -> String {
+    let (path, out) = (path.display(), out.display());
     format!(
-        "# Search for the default configuration\n\n\
-         Candidates of `{}`, which says what each changes; each was trained through all stages with every seed and \
-         judged without exploration on fresh episodes of orange. Written by `cargo xtask search --out docs/search.md`.\n\n\
-         {table}",
-        space.display()
+        "# What trains best\n\nThe candidates of `{path}`, which says what each changes. Each was trained through all \
+         stages with every seed and judged without exploration on fresh episodes of orange. Training times are of the \
+         machine that this was written on, whatever else it did; violations are of the reference and of the actual \
+         motion, in training and evaluation.\n\n`cargo xtask search --space {path} --out {out}` writes this page.\n\n{table}",
     )
 }
 
@@ -253,24 +279,41 @@ mod tests {
     use super::*;
 
     fn row(candidate: &str, seed: u64, success_rate: f64) -> Row {
+        let judged = serde_json::json!({
+            "episodes": 100, "success_rate": success_rate, "success_ci95": [0.9, 1.0],
+            "time_to_reach_s": {"mean": 1.5, "median": 1.4, "p95": 2.0},
+            "tip_error_m": {"mean": 0.05, "max": 0.1},
+            "at_success": {
+                "tip_error_m": {"mean": 0.04, "max": 0.05}, "tip_speed_m_s": {"mean": 0.08, "max": 0.1},
+            },
+            "violations": {"reference": 0, "actual": 0},
+            "worst_margin": {"position": 0.1, "velocity": 0.1, "acceleration": 0.1, "jerk": 0.1},
+            "tracking_error": {}, "held_joint_tip_error_m": {"max": 0.0},
+            "intervention_rate": 0.25, "saturation_rate": 0.0, "failsafe_count": 0,
+        });
         Row {
             candidate: candidate.into(),
             seed,
-            steps: [10, 20, 30 + seed],
-            mastered: [true; 3],
-            success_rate,
-            time_to_reach_s: Some(1.5),
-            violations: Violations { reference: 0, actual: 0 },
+            steps: [10, 20, 30],
+            mastered: [true, true, seed == 0],
+            seconds: 90.4,
+            violations: Violations { reference: 0, actual: 1 },
+            judged: serde_json::from_value(judged).unwrap(),
         }
     }
 
     #[test]
     fn candidates_are_ranked_by_their_worst_seed() {
-        let table =
-            table(&[row("even", 0, 0.98), row("even", 2, 0.98), row("odd", 0, 1.0), row("odd", 2, 0.97)]);
+        let rows = [row("odd", 0, 1.0), row("odd", 2, 0.97), row("even", 0, 0.98), row("even", 2, 0.98)];
+        let table = table(&rows);
         let lines: Vec<&str> = table.lines().skip(2).collect();
-        assert_eq!(lines[0], "| even | 2 | 98.00 % | 98.00 % | 1.50 s | 10 + 20 + 31 | 0 |");
-        assert_eq!(lines[1], "| odd | 2 | 97.00 % | 98.50 % | 1.50 s | 10 + 20 + 31 | 0 |");
+        let rest = "1.50 s | 40.0 mm, 80 mm/s | 60 (10, 20, 30";
+        assert_eq!(lines[0], format!("| even | 0 | 98.00 % | {rest}) | 90 s | 25.0 % | 0 + 1 |"));
+        assert_eq!(
+            lines[3],
+            format!("| odd | 2 | 97.00 % | {rest}, not mastered) | 90 s | 25.0 % | 0 + 1 |")
+        );
+        assert_eq!(lines[5], "- even: worst seed 98.00 %, mean 98.00 %, interquartile mean 98.00 %");
     }
 
     #[test]

@@ -28,6 +28,26 @@ pub fn quantile(sample: &[f64], fraction: f64) -> Option<f64> {
     Some(sorted[below] + (rank - rank.floor()) * (sorted[above] - sorted[below]))
 }
 
+/// Mean of the middle half: the quarters at either end are left out, the numbers at their borders in part; `None` of an
+/// empty sample.
+///
+/// Agarwal et al. 2021, "Deep reinforcement learning at the edge of the statistical precipice".
+#[must_use]
+pub fn interquartile_mean(sample: &[f64]) -> Option<f64> {
+    if sample.is_empty() {
+        return None;
+    }
+    let mut sorted = sample.to_vec();
+    sorted.sort_by(f64::total_cmp);
+    let quarter = sorted.len() as f64 / 4.0;
+    let (low, high) = (quarter, 3.0 * quarter);
+    let weighted = sorted.iter().enumerate().map(|(index, value)| {
+        let (from, to) = (index as f64, index as f64 + 1.0);
+        value * (to.min(high) - from.max(low)).max(0.0)
+    });
+    Some(weighted.sum::<f64>() / (high - low))
+}
+
 /// Wilson score interval of a success rate at 95 % confidence: never outside [0, 1], and sound at 0 and 100 %.
 ///
 /// `trials` must be at least `successes`; no trial at all gives [0, 1].
@@ -56,6 +76,15 @@ mod tests {
         assert_eq!(quantile(&sample, 1.0), Some(4.0));
         assert_eq!(quantile(&sample, 0.0), Some(1.0));
         assert_eq!(quantile(&[], 0.5), None);
+    }
+
+    #[test]
+    fn the_interquartile_mean_leaves_out_a_quarter_at_either_end() {
+        assert_eq!(interquartile_mean(&[9.0, 1.0, 2.0, 4.0]), Some(3.0));
+        // Of five, three and half of a quarter: 2 and 4 count with 0.75, 3 with 1.
+        assert_eq!(interquartile_mean(&[-50.0, 2.0, 3.0, 5.0, 90.0]), Some((1.5 + 3.0 + 3.75) / 2.5));
+        assert_eq!(interquartile_mean(&[7.0]), Some(7.0));
+        assert_eq!(interquartile_mean(&[]), None);
     }
 
     #[test]

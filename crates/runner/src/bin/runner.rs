@@ -136,7 +136,7 @@ fn search(mut arguments: Arguments) -> Result<String> {
     if let Some(path) = out {
         let json = serde_json::to_string_pretty(&rows)? + "\n";
         store::write_whole(&path.with_extension("json"), json.as_bytes())?;
-        store::write_whole(&path, search::page(&space, &table).as_bytes())?;
+        store::write_whole(&path, search::page(&space, &path, &table).as_bytes())?;
     }
     Ok(table)
 }
