@@ -184,6 +184,7 @@ fn an_evaluation_has_the_promised_keys_and_repeats() {
         "tip_error_m",
         "violations",
         "worst_margin",
+        "at_success",
         "tracking_error",
         "held_joint_tip_error_m",
         "intervention_rate",
@@ -194,6 +195,7 @@ fn an_evaluation_has_the_promised_keys_and_repeats() {
     assert_eq!(keys(&result), expected);
     assert_eq!(keys(&result["time_to_reach_s"]), ["mean", "median", "p95"]);
     assert_eq!(keys(&result["tip_error_m"]), ["max", "mean"]);
+    assert_eq!(keys(&result["at_success"]), ["tip_error_m", "tip_speed_m_s"]);
     assert_eq!(keys(&result["violations"]), ["actual", "reference"]);
     assert_eq!(keys(&result["worst_margin"]), ["acceleration", "jerk", "position", "velocity"]);
     assert_eq!(keys(&result["held_joint_tip_error_m"]), ["max"]);
