@@ -5,6 +5,14 @@ use std::process::ExitCode;
 
 use anyhow::Result;
 
+/// Exit code of a program that was asked to stop: the shell's for Ctrl-C.
+const INTERRUPTED: u8 = 130;
+
+/// Not finished, because somebody asked to stop; says how to go on.
+#[derive(Debug, thiserror::Error)]
+#[error("{0}")]
+pub struct Interrupted(pub String);
+
 /// Runs `dispatch` with the command and the words after it, prints its result, and turns an error into one line.
 pub fn run(dispatch: impl FnOnce(&str, Vec<String>) -> Result<String>) -> ExitCode {
     let is_terminal = io::stderr().is_terminal();
@@ -19,6 +27,10 @@ pub fn run(dispatch: impl FnOnce(&str, Vec<String>) -> Result<String>) -> ExitCo
     let printed = dispatch(&command, words.collect()).and_then(|result| print(&result));
     match printed {
         Ok(()) => ExitCode::SUCCESS,
+        Err(error) if error.is::<Interrupted>() => {
+            eprintln!("{error}");
+            ExitCode::from(INTERRUPTED)
+        }
         Err(error) => {
             eprintln!("error: {}", one_line(&error));
             ExitCode::FAILURE

@@ -193,6 +193,21 @@ impl Evidence {
         self.joints.iter().fold(PerQuantity::all(1.0), |worst, joint| worst.min(joint.reference))
     }
 
+    /// The smallest margin of the actual motion, with its joint and quantity; none for a machine without joints.
+    #[must_use]
+    pub fn worst_actual(&self) -> Option<(f64, usize, &'static str)> {
+        let margins = self.joints.iter().enumerate().flat_map(|(joint, seen)| {
+            let PerQuantity { position, velocity, acceleration, jerk } = seen.actual;
+            [
+                (position, joint, "position"),
+                (velocity, joint, "velocity"),
+                (acceleration, joint, "acceleration"),
+                (jerk, joint, "jerk"),
+            ]
+        });
+        margins.min_by(|a, b| a.0.total_cmp(&b.0))
+    }
+
     /// Share of safe ranges that the position limits narrowed.
     #[must_use]
     pub fn intervention_rate(&self) -> f64 {

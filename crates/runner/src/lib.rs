@@ -1,9 +1,34 @@
 //! The multi-rate loop, the task, training, evaluation and recording.
 //!
-//! One picture of it: a policy acts at 20 Hz, [`motion`] turns each action into a safe velocity and a jerk-bounded way
+//! In one picture: a policy acts at 20 Hz, [`motion`] turns each action into a safe velocity and a jerk-bounded way
 //! there, samples it at 1 kHz, tracks it at 2 kHz and integrates the crane's dynamics; [`environment`] makes a task of
 //! it, `training` lets a policy learn it, `evaluation` says how well it did, and [`evidence`] keeps count of every limit
 //! meanwhile. Only this crate opens files, draws seeds and reads the clock.
+//!
+//! ```text
+//! machine ──▶ motion ──▶ environment ──▶ training ──▶ runs/NAME/STAGE ──▶ gallery, report
+//!   files      2 kHz      20 Hz            SAC        metrics, checkpoints, certificate
+//! ```
+//!
+//! # Units
+//! SI: m, rad, s, kg, N and N·m; "rad or m" is rad at a hinge and m at a cylinder. Margins are shares of a limit: 1 is
+//! rest in the middle, 0 is the limit.
+//!
+//! # Example
+//! The safe velocities of a joint near its limit, from the crane's own files.
+//! ```
+//! use std::path::Path;
+//!
+//! use runner::config::{ConfigSpec, DEFAULT};
+//! use runner::machine::Machine;
+//!
+//! # std::env::set_current_dir("../..")?;
+//! let machine = Machine::load(&ConfigSpec::read(Path::new(DEFAULT))?)?;
+//! let lift = machine.joints().iter().find(|joint| joint.name == "lift_joint").expect("the crane has one");
+//! let range = lift.zone.range(0.49, 0.05); // m, m/s
+//! assert!(range.min <= range.max && range.max < 0.07, "1 cm before its limit the cylinder has to brake");
+//! # Ok::<(), anyhow::Error>(())
+//! ```
 //!
 //! # Features
 //! - `training` (default): learning and evaluating policies, which takes burn. Without it the programs about motion
@@ -50,6 +75,8 @@ pub mod curriculum;
 pub mod evaluation;
 #[cfg(all(feature = "figures", feature = "training"))]
 pub mod gallery;
+#[cfg(feature = "training")]
+pub mod interrupt;
 #[cfg(feature = "training")]
 pub mod progress;
 #[cfg(all(feature = "figures", feature = "training"))]

@@ -270,6 +270,12 @@ impl Machine {
     }
 }
 
+/// A joint's name as people say it: without the URDF's ending.
+#[must_use]
+pub fn short(joint: &str) -> &str {
+    joint.strip_suffix("_joint").unwrap_or(joint)
+}
+
 /// The rigid bodies with plant and payload.
 ///
 /// # Errors

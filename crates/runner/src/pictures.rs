@@ -10,7 +10,7 @@ mod limits;
 mod plane;
 mod posture;
 
-use figures::{Axis, Course, Layer, Series, Style};
+use figures::{Axis, Colour, Course, Dash, Layer, Series, Style};
 
 pub use architecture::architecture;
 pub use joint::{motion, tracking, tracking_error, velocity_profile, zone};
@@ -20,7 +20,7 @@ pub use limits::margins;
 pub use plane::workspace;
 pub use posture::{Looks, LooksError, postures};
 
-use crate::machine::Machine;
+use crate::machine::{Machine, short};
 use crate::recording::Recording;
 
 /// A recorded episode with everything that its pictures need.
@@ -75,11 +75,6 @@ impl Shown<'_> {
 /// Takes a number out of something that has several.
 type Quantity<T> = fn(&T) -> f64;
 
-/// A joint's name as people say it.
-pub(crate) fn short(joint: &str) -> &str {
-    joint.strip_suffix("_joint").unwrap_or(joint)
-}
-
 /// The axis of a time.
 fn time_axis() -> Axis {
     Axis::new("Time", "s")
@@ -97,11 +92,17 @@ fn points(name: &str, style: Style, points: impl IntoIterator<Item = [f64; 2]>) 
     Layer::Series(Series { name: name.to_owned(), points, course: Course::Points, style })
 }
 
-/// The reference and the actual motion look the same in every picture.
-fn reference_style() -> Style {
+/// A reference alone.
+fn way_style() -> Style {
     Style { width: 2.4, ..Style::nth(0).unmarked() }
 }
 
+/// A reference under the actual motion, which hides all but the edges of it: pale and wide.
+fn reference_style() -> Style {
+    Style { colour: Colour::Sky, dash: Dash::Solid, marker: None, width: 4.5 }
+}
+
+/// The actual motion on its reference.
 fn actual_style() -> Style {
-    Style { width: 1.2, ..Style::nth(1).unmarked() }
+    Style { colour: Colour::Vermillion, dash: Dash::Solid, marker: None, width: 1.3 }
 }

@@ -1,14 +1,19 @@
-//! What a person sees while a stage trains: a bar on a terminal, plain lines elsewhere, nothing with `--quiet`.
+//! What a person sees while a stage trains: three lines that stay in place on a terminal, plain lines elsewhere, nothing
+//! with `--quiet`.
+
+mod speed;
 
 use std::io::IsTerminal;
 use std::time::{Duration, Instant};
 
 use indicatif::{ProgressBar, ProgressStyle};
 
+use self::speed::{Count, Speedometer};
+
 /// How progress is shown.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Display {
-    /// A bar on a terminal, a line every ten seconds where the output is no terminal.
+    /// In place on a terminal, a line every ten seconds where the output is no terminal.
     Automatic,
     /// A line every ten seconds, everywhere.
     Lines,
@@ -17,32 +22,56 @@ pub enum Display {
 }
 
 /// What is shown of a training.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Debug, PartialEq)]
 pub struct Status {
     /// Episodes finished.
     pub episode: u64,
     /// Environment steps so far.
     pub steps: u64,
+    /// Updates of the learner since the program was started.
+    pub updates: u64,
     /// Share of successes over the rolling window.
     pub success_rate: f64,
     /// Mean return over the rolling window.
     pub return_: f64,
+    /// Means over the last episode's updates, once there are any.
+    pub learner: Option<Learner>,
+    /// The smallest margin to any limit so far, of the actual motion.
+    pub worst: Worst,
+}
+
+/// What is shown of the learner.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Learner {
+    /// Weight of the entropy.
+    pub entropy_temperature: f64,
+    /// Loss of the critics.
+    pub critic_loss: f64,
+    /// Loss of the actor.
+    pub actor_loss: f64,
+}
+
+/// A smallest margin and whose it is.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Worst {
+    /// Share of the limit that is left.
+    pub margin: f64,
+    /// The joint, and which of its limits.
+    pub place: String,
 }
 
 /// Shows how far a training is.
 #[derive(Debug)]
 pub struct Progress {
     mode: Mode,
-    started: Instant,
-    first_steps: Option<u64>,
-    first_episode: u64,
+    speed: Speedometer,
     episodes: u64,
     stage: &'static str,
 }
 
 #[derive(Debug)]
 enum Mode {
-    Bar(ProgressBar),
+    InPlace(ProgressBar),
     Lines { last: Option<Instant> },
     Quiet,
 }
@@ -57,64 +86,78 @@ impl Progress {
         let mode = match display {
             Display::Quiet => Mode::Quiet,
             Display::Automatic if std::io::stderr().is_terminal() => {
-                let style = ProgressStyle::with_template("{prefix:>7} {bar:28} {pos}/{len} {msg}")
+                let style = ProgressStyle::with_template("{prefix:>7} {bar:24} {pos}/{len} episodes{msg}")
                     .expect("the template is a constant and was seen to parse");
                 let bar = ProgressBar::new(episodes).with_style(style).with_prefix(stage);
-                Mode::Bar(bar)
+                Mode::InPlace(bar)
             }
             Display::Automatic | Display::Lines => Mode::Lines { last: None },
         };
-        Self { mode, started: now(), first_steps: None, first_episode: 0, episodes, stage }
+        Self { mode, speed: Speedometer::new(), episodes, stage }
     }
 
     /// Shows the state after an episode.
-    pub fn update(&mut self, status: Status) {
+    pub fn update(&mut self, status: &Status) {
         if matches!(self.mode, Mode::Quiet) {
             return;
         }
-        let first_steps = *self.first_steps.get_or_insert_with(|| {
-            self.first_episode = status.episode;
-            status.steps
-        });
-        let seconds = self.started.elapsed().as_secs_f64().max(1e-9);
-        let steps_per_second = (status.steps - first_steps) as f64 / seconds;
-        let episodes_per_second = (status.episode - self.first_episode) as f64 / seconds;
-        let left = self.episodes.saturating_sub(status.episode) as f64;
-        let eta = if episodes_per_second > 0.0 { duration(left / episodes_per_second) } else { "?".into() };
-        let message = format!(
-            "success {:3.0} %  return {:7.2}  step {:6}  {:5.0} steps/s  ETA at most {eta}",
-            100.0 * status.success_rate,
-            status.return_,
-            status.steps,
-            steps_per_second
-        );
+        let Status { episode, steps, updates, .. } = *status;
+        self.speed.add(now(), Count { episode, steps, updates });
+        let [task, learner, speed, left] = self.parts(status);
         match &mut self.mode {
-            Mode::Bar(bar) => {
+            Mode::InPlace(bar) => {
                 bar.set_position(status.episode);
-                bar.set_message(message);
+                let indent = " ".repeat(7);
+                bar.set_message(format!(", {left}\n{indent} {task}\n{indent} {learner}\n{indent} {speed}"));
             }
             Mode::Lines { last } => {
                 if last.is_none_or(|last| last.elapsed() >= LINE_INTERVAL) {
                     *last = Some(now());
-                    eprintln!("{} episode {}/{}  {message}", self.stage, status.episode, self.episodes);
+                    let (stage, episodes) = (self.stage, self.episodes);
+                    eprintln!("{stage} episode {episode}/{episodes}  {task}  {learner}  {speed}  {left}");
                 }
             }
             Mode::Quiet => {}
         }
     }
 
+    /// What the task, the learner, the limits and the clock say; each fits into a narrow terminal.
+    fn parts(&self, status: &Status) -> [String; 4] {
+        let Status { steps, success_rate, return_, worst, .. } = status;
+        let task = format!("reached {:3.0} %  return {return_:7.2}  step {steps}", 100.0 * success_rate);
+        let learner = match &status.learner {
+            None => "the learner waits for its first steps".to_owned(),
+            Some(Learner { entropy_temperature, critic_loss, actor_loss }) => format!(
+                "temperature {entropy_temperature:.4}  critic loss {critic_loss:.4}  actor loss {actor_loss:.3}"
+            ),
+        };
+        let margin = format!("least margin {:.2} % ({})", 100.0 * worst.margin, worst.place);
+        let rate = self.speed.per_second();
+        let speed = rate.map_or_else(String::new, |rate| {
+            format!("{:.0} steps/s  {:.0} updates/s  ", rate.steps, rate.updates)
+        });
+        let episodes_left = self.episodes.saturating_sub(status.episode) as f64;
+        let left = match rate {
+            Some(rate) if rate.episodes > 0.0 => {
+                format!("at most {} left", duration(episodes_left / rate.episodes))
+            }
+            _ => "time left unknown".to_owned(),
+        };
+        [task, learner, speed + &margin, left]
+    }
+
     /// Says one thing that stays on the screen.
     pub fn say(&self, line: &str) {
         match &self.mode {
-            Mode::Bar(bar) => bar.suspend(|| eprintln!("{line}")),
+            Mode::InPlace(bar) => bar.suspend(|| eprintln!("{line}")),
             Mode::Lines { .. } => eprintln!("{line}"),
             Mode::Quiet => {}
         }
     }
 
-    /// Ends the bar; what it last showed stays.
+    /// Ends it; what it last showed stays.
     pub fn finish(self) {
-        if let Mode::Bar(bar) = self.mode {
+        if let Mode::InPlace(bar) = self.mode {
             bar.abandon();
         }
     }
@@ -136,12 +179,48 @@ fn duration(seconds: f64) -> String {
 
 #[cfg(test)]
 mod tests {
-    use super::duration;
+    use super::*;
 
     #[test]
     fn durations_are_readable() {
         assert_eq!(duration(59.4), "59 s");
         assert_eq!(duration(61.0), "1 min 01 s");
         assert_eq!(duration(3.0 * 3600.0 + 120.0), "3 h 02 min");
+    }
+
+    #[test]
+    fn everything_that_a_person_wants_to_know_is_shown() {
+        let mut progress = Progress::start(Display::Lines, "purple", 100);
+        let learner = Some(Learner { entropy_temperature: 0.0231, critic_loss: 0.4, actor_loss: -1.25 });
+        let worst = Worst { margin: 0.0123, place: "lift acceleration".to_owned() };
+        let status = Status {
+            episode: 40,
+            steps: 4000,
+            updates: 3000,
+            success_rate: 0.85,
+            return_: -3.5,
+            learner,
+            worst,
+        };
+        let later = now() + Duration::from_secs(4);
+        progress.speed.add(now(), Count { episode: 0, steps: 0, updates: 0 });
+        progress.speed.add(later, Count { episode: 40, steps: 4000, updates: 3000 });
+        let shown = progress.parts(&status).join("  ");
+        for part in [
+            "reached  85 %",
+            "return   -3.50",
+            "least margin 1.23 % (lift acceleration)",
+            "temperature 0.0231",
+            "critic loss 0.4000",
+            "actor loss -1.250",
+            "step 4000",
+            "1000 steps/s",
+            "750 updates/s",
+            "at most 6 s left",
+        ] {
+            assert!(shown.contains(part), "no '{part}' in: {shown}");
+        }
+        let waiting = Status { learner: None, ..status };
+        assert!(progress.parts(&waiting)[1].contains("waits"));
     }
 }

@@ -5,8 +5,6 @@
 mod page;
 mod results;
 
-use std::path::Path;
-
 use anyhow::{Result, ensure};
 use figures::SvgTheme;
 
@@ -39,7 +37,7 @@ pub fn html(source: &Source) -> Result<String> {
         page.figure(&figure.svg(SvgTheme::Reader), caption(name));
     }
     page.section("Configuration");
-    configurations(&mut page, &results)?;
+    configurations(&mut page, &results);
     page.section("Reproduce");
     commands(&mut page, source, &results);
     Ok(page.finish())
@@ -104,30 +102,17 @@ fn caption(name: &str) -> &'static str {
     }
 }
 
-fn configurations(page: &mut Page, results: &[StageResult]) -> Result<()> {
-    for result in results {
-        let text = crate::store::read_text(&result.folder().join("config.ron"))?;
-        let summary = format!("{}, stage {}", escape(&result.run), result.stage);
-        let text = escape(&text);
+fn configurations(page: &mut Page, results: &[StageResult]) {
+    for StageResult { name, stage, config, .. } in results {
+        let summary = format!("{}, stage {stage}", escape(name));
+        let text = escape(config);
         page.html(&format!("<details><summary>{summary}</summary><pre>{text}</pre></details>\n"));
     }
-    Ok(())
 }
 
 fn commands(page: &mut Page, source: &Source, results: &[StageResult]) {
-    let mut lines = Vec::new();
-    for StageResult { run, stage, certificate, .. } in results {
-        let seed = &certificate["seed"];
-        let config = Path::new("runs").join(run).join(stage.name()).join("config.ron");
-        lines.push(format!(
-            "cargo xtask train --stage {stage} --run again-{run} --seed {seed} --config {}",
-            config.display()
-        ));
-    }
-    for StageResult { run, stage, summary, .. } in results {
-        let episodes = summary.episodes;
-        lines.push(format!("cargo xtask eval --run {run} --stage {stage} --episodes {episodes}"));
-    }
+    let [trainings, evaluations] = [0, 1].map(|which| results.iter().map(move |result| &result.again[which]));
+    let mut lines: Vec<String> = trainings.chain(evaluations).cloned().collect();
     let runs: Vec<String> = source.runs.iter().map(|run| format!("--run {run}")).collect();
     lines.push(format!("cargo xtask figures {}", runs.join(" ")));
     lines.push(format!("cargo xtask report {}", runs.join(" ")));

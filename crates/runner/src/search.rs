@@ -12,6 +12,7 @@ use crate::checkpoint;
 use crate::config::{ConfigSpec, read_ron, run_folder};
 use crate::draw::Purpose;
 use crate::evaluation::{self, Plan, Summary, Violations};
+use crate::interrupt::Stop;
 use crate::machine::Machine;
 use crate::progress::Display;
 use crate::stage::Stage;
@@ -164,7 +165,8 @@ fn judge(candidate: &str, config: &ConfigSpec, space: &Space, display: Display) 
     for (index, stage) in Stage::ALL.into_iter().enumerate() {
         let folder = run_folder(&run, stage);
         if !folder.join("timing.json").exists() {
-            let request = Request { run: run.clone(), stage, episodes: None, display };
+            let stop = Stop::default();
+            let request = Request { run: run.clone(), stage, episodes: None, display, stop };
             let training = if training::latest(&folder).exists() {
                 Training::resume(&request, Some(config), None)?
             } else {

@@ -12,18 +12,20 @@ use anyhow::{Context, Result, ensure};
 use sac_burn::Agent;
 
 use self::overlap::Played;
-use self::record::{EpisodeRecord, Recorder};
+use self::record::{EpisodeRecord, Means, Recorder};
 use crate::certificate::{Certificate, Part};
 use crate::checkpoint::{self, Header};
+use crate::command::Interrupted;
 use crate::config::{ConfigSpec, Goal, run_folder};
 use crate::curriculum::{EpisodeResult, Mastery};
 use crate::draw::{Purpose, Stream};
 use crate::environment::{Ending, Environment};
 use crate::evaluation::{self, Evaluation, Plan, Violations};
 use crate::evidence::Evidence;
-use crate::machine::Machine;
+use crate::interrupt::Stop;
+use crate::machine::{Machine, short};
 use crate::observation::Scaling;
-use crate::progress::{Display, Progress, Status};
+use crate::progress::{Display, Learner, Progress, Status, Worst};
 use crate::stage::Stage;
 use crate::store;
 
@@ -38,6 +40,8 @@ pub struct Request {
     pub episodes: Option<u64>,
     /// How progress is shown.
     pub display: Display,
+    /// When to stop before the end.
+    pub stop: Stop,
 }
 
 /// How a training ended.
@@ -102,6 +106,8 @@ pub struct Training {
     steps: u64,
     recorder: Recorder,
     time: TimeSpent,
+    /// Of the last episode in which the learner learnt.
+    learnt: Option<Means>,
 }
 
 /// Where the time of a training went \[s\]; for people, never part of what a seed determines.
@@ -151,6 +157,7 @@ impl Training {
             mastery: Mastery::new(),
             steps: 0,
             time: TimeSpent::default(),
+            learnt: None,
             stage: *stage,
             folder,
             config,
@@ -199,6 +206,7 @@ impl Training {
             steps: header.steps,
             scaling: header.scaling,
             time: TimeSpent::default(),
+            learnt: None,
             stage: *stage,
             folder,
             config,
@@ -212,7 +220,8 @@ impl Training {
     /// `eval.json` and `certificate.json`.
     ///
     /// # Errors
-    /// The learning diverged, the simulation left its range, or a file cannot be written.
+    /// The learning diverged, the simulation left its range, or a file cannot be written. [`Interrupted`] if it was
+    /// asked to stop: its state after the last whole episode is then in the latest checkpoint.
     pub fn run(mut self, request: &Request) -> Result<Finished> {
         // A number of episodes that was asked for is the only bound.
         let mut goal = *self.goal();
@@ -224,13 +233,15 @@ impl Training {
         let started = now();
         let mut checkpoint_at = self.steps + self.config.curriculum.checkpoint_every;
         while !self.mastery.is_over(self.steps, episodes, &goal) {
-            self.episode()?;
-            progress.update(Status {
-                episode: self.mastery.episodes,
-                steps: self.steps,
-                success_rate: self.mastery.success_rate(),
-                return_: self.mastery.mean_return(),
-            });
+            if request.stop.is_wanted() {
+                self.save_latest()?;
+                progress.finish();
+                return Err(self.interrupted(&request.run).into());
+            }
+            if let Some(rate) = self.episode()? {
+                progress.say(&self.confirmation(rate));
+            }
+            progress.update(&self.status());
             if self.steps >= checkpoint_at {
                 checkpoint_at = self.steps + self.config.curriculum.checkpoint_every;
                 self.save_latest()?;
@@ -259,8 +270,50 @@ impl Training {
         self.config.curriculum.of(self.stage)
     }
 
-    /// One training episode, its record, and a confirmation if it is time for one.
-    fn episode(&mut self) -> Result<()> {
+    /// What a person is shown.
+    fn status(&self) -> Status {
+        let name = |joint: usize| short(&self.machine.joints()[joint].name).replace('_', " ");
+        let (margin, place) = self
+            .evidence
+            .worst_actual()
+            .map_or((1.0, String::new()), |(margin, joint, of)| (margin, format!("{} {of}", name(joint))));
+        Status {
+            episode: self.mastery.episodes,
+            steps: self.steps,
+            updates: self.time.updates,
+            success_rate: self.mastery.success_rate(),
+            return_: self.mastery.mean_return(),
+            learner: self.learnt.map(|means| Learner {
+                entropy_temperature: means.entropy_temperature,
+                critic_loss: means.critic,
+                actor_loss: means.actor,
+            }),
+            worst: Worst { margin, place },
+        }
+    }
+
+    /// What is said of a confirmation.
+    fn confirmation(&self, rate: f64) -> String {
+        let (stage, episode) = (self.stage, self.mastery.episodes);
+        let word = if self.mastery.mastered { "mastered" } else { "not enough yet" };
+        let of = self.goal().confirm_episodes;
+        format!(
+            "{stage} episode {episode}: {:.1} % of {of} reached without exploration, {word}",
+            100.0 * rate
+        )
+    }
+
+    /// What is said of a training that was asked to stop.
+    fn interrupted(&self, run: &str) -> Interrupted {
+        let (stage, episodes, steps) = (self.stage, self.mastery.episodes, self.steps);
+        Interrupted(format!(
+            "{stage}: stopped after {episodes} episodes, {steps} steps; go on with: cargo xtask train --stage {stage} \
+             --run {run} --resume"
+        ))
+    }
+
+    /// One training episode, its record, and a confirmation if it is time for one; gives its success rate.
+    fn episode(&mut self) -> Result<Option<f64>> {
         let number = self.mastery.episodes;
         let mut stream = Stream::of_episode(self.config.seed, Purpose::Training, self.stage, number);
         let episode = self.environment.draw(self.machine.regions().of(self.stage), &mut stream)?;
@@ -279,6 +332,7 @@ impl Training {
         let seen = self.environment.take_evidence();
         self.evidence.join(&seen);
         let confirmed = self.confirm_if_due()?;
+        self.learnt = losses.means().or(self.learnt);
         self.recorder.add(&EpisodeRecord {
             episode: self.mastery.episodes,
             step: self.steps,
@@ -292,7 +346,8 @@ impl Training {
             violations: seen.reference_violations + seen.actual_violations,
             confirmed,
             losses: losses.means(),
-        })
+        })?;
+        Ok(confirmed)
     }
 
     /// Confirms the stage by a deterministic evaluation if its window of successes asks for one; gives the success rate.
@@ -308,7 +363,6 @@ impl Training {
         if self.mastery.confirm(rate, self.config.curriculum.of(self.stage)) {
             self.save(&best(&self.folder))?;
         }
-        tracing::info!(stage = self.stage.name(), episode = self.mastery.episodes, rate, "confirmation");
         Ok(Some(rate))
     }
 

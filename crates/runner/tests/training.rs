@@ -149,6 +149,42 @@ fn a_killed_training_resumes_from_its_last_checkpoint() {
     check_same_training(&project, "whole", "killed");
 }
 
+#[test]
+#[cfg(unix)]
+fn a_training_that_is_asked_to_stop_says_how_to_go_on_and_equals_one_that_never_stopped() {
+    let project = small_project();
+    let episodes = 5 * EPISODES;
+    check_success(&train(&project, &format!("--stage purple --run whole --episodes {episodes}")));
+    for signal in ["INT", "TERM"] {
+        let arguments = format!("train --plain --stage purple --run {signal} --episodes 100000");
+        let child = runner()
+            .args(arguments.split(' '))
+            .current_dir(project.path(""))
+            .stdout(Stdio::piped())
+            .stderr(Stdio::piped())
+            .spawn()
+            .unwrap();
+        let metrics = project.path(&format!("runs/{signal}/purple/metrics.jsonl"));
+        while !fs::read_to_string(&metrics).is_ok_and(|text| text.lines().count() >= 3) {
+            std::thread::yield_now();
+        }
+        let sent = Command::new("kill").args([&format!("-{signal}"), &child.id().to_string()]).status();
+        assert!(sent.unwrap().success());
+        let output = child.wait_with_output().unwrap();
+        let said = String::from_utf8(output.stderr).unwrap();
+        assert_eq!(output.status.code(), Some(130), "{said}");
+        let command = format!("cargo xtask train --stage purple --run {signal} --resume");
+        assert!(said.lines().last().unwrap().ends_with(&command), "{said}");
+        assert!(said.contains("least margin") && output.stdout.is_empty(), "{said}");
+        assert!(!project.path(&format!("runs/{signal}/purple/eval.json")).exists());
+        let stopped_after = fs::read_to_string(&metrics).unwrap().lines().count() as u64;
+        assert!(stopped_after < episodes, "it went on for {stopped_after} episodes");
+        let rest = format!("--stage purple --run {signal} --resume --episodes {episodes}");
+        check_success(&train(&project, &rest));
+        check_same_training(&project, "whole", signal);
+    }
+}
+
 #[track_caller]
 fn check_same_training(project: &Project, one: &str, other: &str) {
     let of = |run: &str, file: &str| project.bytes(&format!("runs/{run}/purple/{file}"));

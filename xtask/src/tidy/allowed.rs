@@ -82,7 +82,7 @@ pub(super) const ALLOWED: &[Allowed] = &[
             "tracing",
             "tracing-subscriber",
         ],
-        optional: &["figures", "sac-burn", "crc32c", "indicatif", "mimalloc", "urdf-rs"],
+        optional: &["figures", "sac-burn", "crc32c", "indicatif", "mimalloc", "signal-hook", "urdf-rs"],
         dev: &["tempfile"],
         ..NOTHING
     },

@@ -11,6 +11,7 @@ use runner::arguments::Arguments;
 use runner::config::{self, ConfigSpec, run_folder};
 use runner::draw::Purpose;
 use runner::evaluation::{self, Plan};
+use runner::interrupt::Stop;
 use runner::machine::Machine;
 use runner::progress::Display;
 use runner::stage::Stage;
@@ -70,9 +71,10 @@ fn train(mut arguments: Arguments) -> Result<String> {
         _ => bail!("give --stage purple|yellow|orange, or --all"),
     };
     let wanted = file.as_deref().map(ConfigSpec::read).transpose()?;
+    let stop = Stop::on_signals()?;
     let mut report = String::new();
     for stage in stages {
-        let request = Request { run: run.clone(), stage, episodes, display };
+        let request = Request { run: run.clone(), stage, episodes, display, stop: stop.clone() };
         let begun = training::latest(&run_folder(&run, stage)).exists();
         // `--all --resume` goes on in the stage where it stopped and starts the stages after it.
         let training = if resume && (begun || !all) {

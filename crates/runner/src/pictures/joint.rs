@@ -7,7 +7,7 @@ use figures::{
 use jbtg::{Interval, State};
 use safezone::SafeZone;
 
-use super::{Quantity, Shown, actual_style, line, points, reference_style, time_axis};
+use super::{Quantity, Shown, actual_style, line, points, reference_style, time_axis, way_style};
 use crate::recording::RecordedTick;
 
 /// Points along each curved edge of a zone.
@@ -40,10 +40,10 @@ pub fn zone(shown: &Shown<'_>, action: usize) -> Result<Figure, FigureError> {
                         colour: Colour::Green,
                         dash: Dash::Solid,
                     }),
-                    line("the policy's way", reference_style(), way),
+                    line("the policy's way", way_style(), way),
                     points(
                         "policy steps",
-                        Style { marker: Some(Marker::Ring), ..reference_style() },
+                        Style { marker: Some(Marker::Ring), ..way_style() },
                         steps.iter().map(|step| at(&step.reference[action])),
                     ),
                     points(
@@ -110,7 +110,7 @@ pub fn velocity_profile(shown: &Shown<'_>) -> Result<Figure, FigureError> {
                         course: Course::Steps,
                         colour: Colour::Green,
                     }),
-                    line("jerk-bounded curve", reference_style(), curve),
+                    line("jerk-bounded curve", way_style(), curve),
                     points("chosen", Style { marker: Some(Marker::Disc), ..Style::nth(1) }, chosen),
                 ],
             )
@@ -168,7 +168,7 @@ pub fn tracking(shown: &Shown<'_>) -> Result<Figure, FigureError> {
         ];
         for (quantity, unit, of) in quantities {
             panels.push(Panel {
-                height: 140.0,
+                height: 165.0,
                 ..Panel::new(
                     Axis::new(&format!("{name} {quantity}"), &unit),
                     vec![

@@ -2,9 +2,9 @@
 
 use figures::{Axis, Boxes, Chart, Colour, Distribution, Figure, FigureError, Layer, Panel, Spacing};
 
-use super::{Quantity, short};
+use super::Quantity;
 use crate::evidence::PerQuantity;
-use crate::machine::Machine;
+use crate::machine::{Machine, short};
 use crate::recording::Recording;
 
 /// For each quantity and joint the distribution, over episodes, of the smallest margin to the actuator's limit.

@@ -1,35 +1,33 @@
 //! What runs left on disk, as tables.
 
-use std::path::PathBuf;
-
 use anyhow::{Context, Result};
 use serde_json::Value;
 
 use super::page::{Page, grouped};
 use crate::config::run_folder;
 use crate::evaluation::Summary;
-use crate::pictures::short;
+use crate::machine::short;
 use crate::stage::Stage;
 use crate::{statistics, store};
 
 /// The quantities of a certificate's margins, in the order of its tables.
 const QUANTITIES: [&str; 4] = ["position", "velocity", "acceleration", "jerk"];
 
-/// One finished stage of a run.
+/// One finished stage of a run, or of the training that a policy's file is from.
 #[derive(Clone, Debug)]
 pub(super) struct StageResult {
-    pub(super) run: String,
+    /// What the run or the policy is called.
+    pub(super) name: String,
     pub(super) stage: Stage,
     pub(super) summary: Summary,
     pub(super) certificate: Value,
+    /// The configuration, as RON.
+    pub(super) config: String,
+    /// The commands that train and evaluate it again.
+    pub(super) again: [String; 2],
 }
 
 impl StageResult {
-    /// Where its files are.
-    pub(super) fn folder(&self) -> PathBuf {
-        run_folder(&self.run, self.stage)
-    }
-
     /// Limits that did not hold, in training and evaluation, reference and actual together.
     pub(super) fn violations(&self) -> u64 {
         let of = |motion: &str| self.certificate["violations"][motion].as_u64().unwrap_or(u64::MAX / 4);
@@ -63,13 +61,28 @@ pub(super) fn read(runs: &[String]) -> Result<Vec<StageResult>> {
                 let path = folder.join(name);
                 serde_json::from_str(&store::read_text(&path)?).with_context(|| path.display().to_string())
             };
-            let summary = serde_json::from_value(parse("eval.json")?)
+            let summary: Summary = serde_json::from_value(parse("eval.json")?)
                 .with_context(|| folder.join("eval.json").display().to_string())?;
             let certificate = parse("certificate.json")?;
-            results.push(StageResult { run: run.clone(), stage, summary, certificate });
+            let config = store::read_text(&folder.join("config.ron"))?;
+            let again = again(run, stage, &certificate, &summary);
+            results.push(StageResult { name: run.clone(), stage, summary, certificate, config, again });
         }
     }
     Ok(results)
+}
+
+/// The commands that train a stage of a run again, under another name, and evaluate the run's own policy.
+fn again(run: &str, stage: Stage, certificate: &Value, summary: &Summary) -> [String; 2] {
+    let config = run_folder(run, stage).join("config.ron");
+    [
+        format!(
+            "cargo xtask train --stage {stage} --run again-{run} --seed {} --config {}",
+            certificate["seed"],
+            config.display()
+        ),
+        format!("cargo xtask eval --run {run} --stage {stage} --episodes {}", summary.episodes),
+    ]
 }
 
 /// One sentence about all runs of a stage.
@@ -110,10 +123,10 @@ pub(super) fn table(page: &mut Page, results: &[StageResult]) {
     let rows: Vec<Vec<String>> = results
         .iter()
         .map(|result| {
-            let StageResult { run, stage, summary, certificate } = result;
+            let StageResult { name, stage, summary, certificate, .. } = result;
             let count = |key: &str| certificate[key].as_u64().map_or_else(|| "–".to_owned(), grouped);
             vec![
-                format!("{stage}, {run}"),
+                format!("{stage}, {name}"),
                 count("episodes"),
                 count("steps"),
                 percent(summary.success_rate),
@@ -175,14 +188,14 @@ pub(super) fn certificate(page: &mut Page, results: &[StageResult]) {
         .collect();
     let heads = [
         "Worst margin",
-        "Position",
-        "Velocity",
-        "Acceleration",
-        "Jerk",
+        "Reference position",
+        "Reference velocity",
+        "Reference acceleration",
+        "Reference jerk",
         "Actual position",
-        "Velocity",
-        "Acceleration",
-        "Jerk",
+        "Actual velocity",
+        "Actual acceleration",
+        "Actual jerk",
     ];
     page.html(
         "<p>Worst margins to the actuators' limits, as shares of them: first of the reference, exact, then of the actual \

@@ -46,9 +46,9 @@ pub(super) struct EpisodeRecord {
 /// Means over updates.
 #[derive(Clone, Copy, Debug, Default, Serialize)]
 pub(super) struct Means {
-    critic: f64,
-    actor: f64,
-    entropy_temperature: f64,
+    pub(super) critic: f64,
+    pub(super) actor: f64,
+    pub(super) entropy_temperature: f64,
     mean_q: f64,
     entropy: f64,
 }
