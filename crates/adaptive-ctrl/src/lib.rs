@@ -11,6 +11,22 @@
 //! fail; what happened in it is a status in the [`Command`]. Nothing here allocates during a step,
 //! logs or reads a clock.
 //!
+//! # Picture
+//!
+//! ```text
+//! reference  position ─────▶ ⊖ e₁ ─ k₁ ─▶ ⊕ ─▶ ⊖ z₂ ─ k₅ ─────▶ ⊕ ─▶ [ limits ] ─▶ effort
+//!            velocity ──────────────────▶ ┘    ▲     k₆ φ̂₂ ──▶ ┘ ▲
+//! measured   position ─────▶ ┘                 │   grows with    │ effort that a model
+//!            velocity ─────────────────────────┘   the error     │ expects, if there is one
+//! ```
+//!
+//! # Units
+//!
+//! SI: positions \[rad or m\], efforts \[N·m or N\], inertia \[kg·m² or kg\], periods \[s\]. Gains belong to one joint and
+//! one period.
+//!
+//! # Example
+//!
 //! ```
 //! use adaptive_ctrl::{
 //!     AdaptiveController, Bounds, EffortLimits, Gains, GainsSpec, InverseInertia, JointController, JointSpec,

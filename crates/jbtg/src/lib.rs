@@ -1,5 +1,17 @@
 #![doc = include_str!("../README.md")]
 //!
+//! # Picture
+//!
+//! ```text
+//! velocity                      a ramp is one quintic in position: acceleration rises from 0 and
+//!  v₂ ┤          ╭─────●        returns to 0, and jerk with it; between the ramps it is constant
+//!     │        ╱
+//!     │      ╱                  Stretched: the change takes the whole period
+//!  v₁ ┤●────╯                   Fastest:   ramp at the limits, then cruise at v₂
+//!     └┴───────────────┴─▶ time
+//!      0             period     ● the policy chooses v₂; the next step begins where this one ends
+//! ```
+//!
 //! # Feature flags
 //! - `std` (default): square roots from the standard library.
 //! - `libm`: square roots from `libm`, for `no_std` targets.

@@ -1,5 +1,17 @@
 //! One joint, driven by each generator in the same way.
 //!
+//! The same picture for each: a state of the joint goes in, a target velocity is planned for, and the state comes out at
+//! any time of the period. Units are SI: m, m/s, m/s², m/s³, s.
+//!
+//! ```
+//! use jbtg::Timing;
+//! use peers::{TELESCOPE, zone};
+//!
+//! let ours = zone(TELESCOPE, Timing::Stretched, 0.05);
+//! let range = ours.range(0.49, 0.1);
+//! assert!(range.max < 0.1, "near its limit the joint has to brake");
+//! ```
+//!
 //! Only benches and the program `peers` use this; nothing depends on it, and it is no default member of the workspace
 //! since Ruckig needs a C++20 compiler.
 #![forbid(unsafe_code)]

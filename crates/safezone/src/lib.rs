@@ -1,5 +1,20 @@
 #![doc = include_str!("../README.md")]
 //!
+//! # Picture
+//!
+//! ```text
+//! velocity
+//!  max ┤━━━━━━━━━━━━━━━╮          inside: the joint can stop before its limit by braking
+//!      │     ●→→→→→→●   ╲         step by step, D(v) is the distance that this takes
+//!      │    safe      ↘   ╲
+//!    0 ┼───────────────●───┤ p_max
+//!      │                         the range at a position: every next velocity whose step
+//!  min ┤╮━━━━━━━━━━━━━━━━━━      ends inside; braking is always one of them
+//!      └──────────────────────▶ position
+//! ```
+//!
+//! Units are SI: "rad or m" stands for rad at a revolute joint and m at a prismatic one.
+//!
 //! # Feature flags
 //! - `std` (default): the standard library.
 //! - `libm`: square roots from `libm`, for `no_std` targets; no allocation.
