@@ -12,6 +12,7 @@
 //! - Case 1 with v₂ < v₁ = v_max: the cruise comes before the ramp, or the displacement is not the largest.
 //! - The footnote's negations leave v₁ < 0 < v₂ and v₂ = 0 open. Here only the direction counts.
 
+mod ease;
 mod family;
 
 pub(crate) use family::Family;
@@ -51,7 +52,7 @@ pub enum PulseKind {
     Map,
 }
 
-/// How [`Planner::farthest`](crate::Planner::farthest) gets from one velocity to another.
+/// How [`Planner::waypoint`](crate::Planner::waypoint) gets from one velocity to another.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Detour {
     /// Case of [P, Alg. 3].
@@ -122,6 +123,20 @@ impl DetourLimits {
         let peak = side.peak((v1, v2), velocity.max, period)?;
         Some(side.through(peak, (v1, v2), period))
     }
+
+    /// The same with the largest displacement in `direction`, whichever its peak velocity.
+    pub(crate) fn plan_farthest(&self, ends: (f64, f64), direction: Direction, period: f64) -> Option<Plan> {
+        let plan = self.plan(ends, direction, period)?;
+        let (side, highest) = match direction {
+            Direction::Increasing => (&self.up, self.velocity.max),
+            Direction::Decreasing => (&self.down, -self.velocity.min),
+        };
+        let eased = side.eased(ends, highest, period).and_then(|side| {
+            let peak = side.peak(ends, highest, period)?;
+            Some(side.through(peak, ends, period))
+        });
+        Some(eased.filter(|eased| eased.displacement > plan.displacement).unwrap_or(plan))
+    }
 }
 
 impl Side {
@@ -161,8 +176,8 @@ impl Side {
         let higher = v1.max(v2);
         // The comparison of dt with dt_limit, once for each ramp.
         let is_msap = |limit: f64| limit <= higher || self.time(ends, limit) <= period;
-        let (rise_limit, fall_limit) = (v1 + rise.ramps_only, v2 + fall.ramps_only);
-        let full = |family: &Family| family.slowness * family.acceleration;
+        let (rise_limit, fall_limit) = (v1 + rise.full_from, v2 + fall.full_from);
+        let full = |family: &Family| 0.5 * (family.ramp_up + family.ramp_down);
         match (is_msap(rise_limit), is_msap(fall_limit)) {
             (true, true) => {
                 let direct = full(rise)

@@ -47,7 +47,8 @@ fn functions_keep_their_signatures() {
     let _: fn(&Planner, f64, f64) -> f64 = Planner::displacement;
     let _: [fn(&Planner, f64, f64, f64) -> Ramp; 4] =
         [Planner::ramp, Planner::ramp_saturated, Planner::waypoint, Planner::waypoint_saturated];
-    let _: fn(&Planner, f64, f64, f64, Direction) -> Ramp = Planner::farthest;
+    let _: [fn(&Planner, f64, f64, f64, Direction) -> Ramp; 2] =
+        [Planner::waypoint_towards, Planner::farthest];
     let _: fn(&Planner, f64, f64, Direction) -> Result<Detour, RampError> = Planner::detour;
     let _: fn(&Planner, State) -> Result<Stop, StopError> = Planner::stop;
     let _: fn(&Planner, &Trajectory, f64) -> Result<Stop, StopError> = Planner::interrupt;

@@ -23,7 +23,7 @@ fn step_of(planner: &Planner, ((position, v1, v2), kind): ((f64, f64, f64), u8))
     let position = within(planner.limits().position(), position);
     let step = match kind {
         0 => planner.ramp(position, v1, v2),
-        1 => planner.farthest(position, v1, v2, Direction::Increasing),
+        1 => planner.waypoint_towards(position, v1, v2, Direction::Increasing),
         _ => planner.farthest(position, v1, v2, Direction::Decreasing),
     };
     step.expect("a reachable velocity")

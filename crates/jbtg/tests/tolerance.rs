@@ -26,3 +26,6 @@ pub(crate) const LINE_ULPS: f64 = 16.0;
 /// Jerk left where a ramp is within rounding of its end, relative to the jerk limits' width: 1 − (3u² − 2u³) = 2⁻⁵² at
 /// 1 − u = 1e-8, where the jerk is 4e-8 of its largest.
 pub(crate) const JERK_LEFT: f64 = 1e-7;
+
+/// The largest displacement of a detour, of period·(largest speed): what a direct search with steps down to 1e-7 finds.
+pub(crate) const OPTIMUM: f64 = 1e-9;

@@ -11,22 +11,25 @@ use crate::{Shape, Timing};
 /// both ramps' durations per acceleration. It takes Δv/A + s·A from s·A² on, and 2·√(s·Δv) below: of all peak
 /// accelerations this one takes the least time.
 ///
-/// The ramp next to the peak velocity takes at least a tenth of the other one: otherwise a higher peak could yield a
-/// smaller displacement.
+/// An [eased](Family::eased) family has the peak acceleration min(A, √(y·Δv/s)) instead, y ≤ 1 its share.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Family {
     /// Peak acceleration A, > 0; at most what fits into a period.
     pub(crate) acceleration: f64,
     /// Duration of the rising ramp at A \[s\].
-    ramp_up: f64,
+    pub(crate) ramp_up: f64,
     /// Duration of the falling ramp at A \[s\].
-    ramp_down: f64,
+    pub(crate) ramp_down: f64,
     /// Velocity change of two full ramps without a cruise, s·A²: dV_min of [P, Eq. (dvmin)].
-    pub(crate) ramps_only: f64,
-    /// s [s³/rad or s³/m].
+    ramps_only: f64,
+    /// Least velocity change whose peak acceleration is A, s·A²/y.
+    pub(crate) full_from: f64,
+    /// (time of a pulse below A)²/(4·Δv) [s³/rad or s³/m]: s, and more if eased.
     pub(crate) slowness: f64,
+    /// Duration of a pulse below A per duration of its ramps: (1 + 1/y)/2.
+    lengthening: f64,
     /// ∫∫ of the shape over its ramp, A = T = 1.
-    displacement: f64,
+    pub(crate) displacement: f64,
     /// Velocity beyond the ends of the shape's ramp, A = T = 1.
     reverse_velocity: f64,
 }
@@ -34,8 +37,8 @@ pub(crate) struct Family {
 impl Family {
     /// The pulses that lead to the peak velocity.
     pub(crate) fn towards_peak(bounds: Bounds, shape: Shape, period: f64) -> Self {
-        // `Fastest` bounds the falling ramp from below, which here is the one next to the peak.
-        Self::from_pulses(&PulseLimits::new(bounds, shape, Timing::Fastest, period), shape)
+        // `Fastest` would lengthen a ramp far shorter than the other one.
+        Self::from_pulses(&PulseLimits::new(bounds, shape, Timing::Stretched, period), shape)
     }
 
     /// The pulses that lead away from the peak velocity: those of the mirrored time, reversed.
@@ -49,14 +52,28 @@ impl Family {
     fn from_pulses(pulses: &PulseLimits, shape: Shape) -> Self {
         let PulseLimits { acceleration, ramp_up, ramp_down, .. } = *pulses;
         let constants = shape.constants();
+        let ramps_only = 0.5 * acceleration * (ramp_up + ramp_down);
         Self {
             acceleration,
             ramp_up,
             ramp_down,
-            ramps_only: 0.5 * acceleration * (ramp_up + ramp_down),
+            ramps_only,
+            full_from: ramps_only,
             slowness: 0.5 * (ramp_up + ramp_down) / acceleration,
+            lengthening: 1.0,
             displacement: constants.displacement,
             reverse_velocity: constants.reverse_velocity,
+        }
+    }
+
+    /// The same pulses with the `share` y of the square of the peak acceleration, 0 < y ≤ 1, where that is below A.
+    pub(crate) fn eased(&self, share: f64) -> Self {
+        let lengthening = 0.5 + 0.5 / share;
+        Self {
+            full_from: self.ramps_only / share,
+            slowness: self.slowness * (share * lengthening * lengthening),
+            lengthening,
+            ..*self
         }
     }
 
@@ -64,10 +81,10 @@ impl Family {
     #[inline]
     pub(crate) fn time(&self, change: f64) -> f64 {
         let ramps = self.ramp_up + self.ramp_down;
-        if change >= self.ramps_only {
+        if change >= self.full_from {
             ramps + (change - self.ramps_only) / self.acceleration
         } else if change > 0.0 {
-            ramps * self.scale(change)
+            ramps * self.scale(change) * self.lengthening
         } else {
             0.0
         }
@@ -76,10 +93,11 @@ impl Family {
     /// The pulse for a velocity change > 0, all its durations `stretch` times as long as they need be.
     #[inline]
     pub(crate) fn pulse(&self, change: f64, stretch: f64) -> Pulse {
-        let (scale, cruise) = if change >= self.ramps_only {
+        let (scale, cruise) = if change >= self.full_from {
             (1.0, (change - self.ramps_only) / self.acceleration)
         } else {
-            (self.scale(change), 0.0)
+            let scale = self.scale(change);
+            (scale, scale * (self.ramp_up + self.ramp_down) * (self.lengthening - 1.0))
         };
         let (ramp_up, ramp_down) = (self.ramp_up * scale * stretch, self.ramp_down * scale * stretch);
         let cruise = cruise * stretch;
@@ -106,9 +124,9 @@ impl Family {
         self.reverse_velocity * self.acceleration * share * self.ramp_up.max(self.ramp_down)
     }
 
-    /// Ramp durations of a pulse without cruise as a share of the full ones, a_peak/A of [P, Eq. (apeak time)].
+    /// Ramp durations of a pulse below A as a share of the full ones, a_peak/A of [P, Eq. (apeak time)].
     #[inline]
     fn scale(&self, change: f64) -> f64 {
-        sqrt(change / self.ramps_only).max(MIN_RAMP_SHARE)
+        sqrt(change / self.full_from).max(MIN_RAMP_SHARE)
     }
 }

@@ -9,7 +9,7 @@ impl Planner {
     /// The motion from `position` and `v1` to `v2` in exactly one period by way of the largest reachable velocity if
     /// `v2` ≥ 0, of the smallest if `v2` < 0: [P, Alg. 3], all cases.
     ///
-    /// [`Planner::farthest`] with the direction of the paper's footnote.
+    /// [`Planner::waypoint_towards`] with the direction of the paper's footnote.
     ///
     /// # Errors
     /// Those of [`Planner::ramp`].
@@ -30,7 +30,7 @@ impl Planner {
     /// # Ok::<(), Box<dyn std::error::Error>>(())
     /// ```
     pub fn waypoint(&self, position: f64, v1: f64, v2: f64) -> Result<Trajectory, RampError> {
-        self.farthest(position, v1, v2, towards(v2))
+        self.waypoint_towards(position, v1, v2, towards(v2))
     }
 
     /// [`Planner::waypoint`] to the reachable velocity nearest to `v2`: "reduce v₂" of [P, Alg. 1].
@@ -45,18 +45,14 @@ impl Planner {
         Ok(self.detour_step(position, (v1, v2), towards(v2)))
     }
 
-    /// The motion from `position` and `v1` to `v2` in exactly one period by way of the velocity that lies as far in
-    /// `direction` as time and limits allow, v_peak of [P, Alg. 3], and is held for what is left of the period.
+    /// [`Planner::waypoint`] with a direction of one's choice, by way of the velocity that lies as far in it as time and
+    /// limits allow: v_peak of [P, Alg. 3], held for what is left of the period.
     ///
     /// Both ramps, to v_peak and from there to `v2`, are MSAPs or MAPs whatever the planner's timing: their
     /// acceleration ramps are as short as the jerk bounds allow, their peak acceleration is the limit or what the
     /// velocity change needs. So each takes the least time, and no ramp of this kind, with whichever peak
-    /// acceleration, leads to a v_peak farther out.
-    ///
-    /// The displacement grows with v_peak. With equal jerk bounds it is the largest of all such motions; with unequal
-    /// ones a peak acceleration a little smaller, held for a moment, can gain a little: with bounds ten times apart at
-    /// most 1.2 % of period·(largest speed), 0.005 % on average over random problems (`tests/optimum.rs`). With jerk bounds more than ten times apart the ramp next to v_peak takes a tenth of the
-    /// other one, although its jerk bound would allow less: this loses a trifle of v_peak and gains displacement.
+    /// acceleration, leads to a v_peak farther out. With equal jerk bounds none leads to a larger displacement
+    /// either; for unequal ones see [`Planner::farthest`].
     ///
     /// The end velocity is `v2` bit for bit. The end position is `position` plus the displacement, rounded once; the
     /// displacement is the closed form v_peak·period − (what both ramps stay behind it). The opposite direction with
@@ -68,7 +64,7 @@ impl Planner {
     ///
     /// # Errors
     /// Those of [`Planner::ramp`].
-    pub fn farthest(
+    pub fn waypoint_towards(
         &self,
         position: f64,
         v1: f64,
@@ -79,7 +75,32 @@ impl Planner {
         Ok(self.detour_step(position, (v1, v2), direction))
     }
 
-    /// Which case of [P, Alg. 3] [`Planner::farthest`] follows, and its v_peak.
+    /// The motion from `position` and `v1` to `v2` in exactly one period that leads farthest in `direction`: no ramps
+    /// to and from a peak velocity, held or not, with whichever peak accelerations, have a larger displacement.
+    ///
+    /// With equal jerk bounds this is [`Planner::waypoint_towards`], bit for bit, and so it is if the acceleration may
+    /// end more gently at the peak than it begins and ends elsewhere. If it must begin more gently, a peak
+    /// acceleration below the one of least time, held for a moment, leads a little farther through a v_peak a little
+    /// lower: by up to 1.2 % of period·(largest speed) with jerk bounds ten times apart. Both are then found
+    /// to 1e-9 of the displacement (`tests/optimum.rs`) in some fifty times the time of
+    /// [`Planner::waypoint_towards`]; the limits and `v2` are met as exactly as there.
+    ///
+    /// # Errors
+    /// Those of [`Planner::ramp`].
+    pub fn farthest(
+        &self,
+        position: f64,
+        v1: f64,
+        v2: f64,
+        direction: Direction,
+    ) -> Result<Trajectory, RampError> {
+        self.check_ramp(position, v1, v2)?;
+        let ends = (from_frame(v1, direction), from_frame(v2, direction));
+        let plan = self.detours.plan_farthest(ends, direction, self.spec.period);
+        Ok(self.follow(plan, position, (v1, v2), direction))
+    }
+
+    /// Which case of [P, Alg. 3] [`Planner::waypoint_towards`] follows, and its v_peak.
     ///
     /// # Errors
     /// Those of [`Planner::ramp`].
@@ -107,8 +128,20 @@ impl Planner {
     }
 
     fn detour_step(&self, position: f64, (v1, v2): (f64, f64), direction: Direction) -> Trajectory {
-        let (plan, ends) = self.plan_detour((v1, v2), direction);
+        let (plan, _) = self.plan_detour((v1, v2), direction);
+        self.follow(plan, position, (v1, v2), direction)
+    }
+
+    /// The motion of `plan`, or the direct step without one.
+    fn follow(
+        &self,
+        plan: Option<Plan>,
+        position: f64,
+        (v1, v2): (f64, f64),
+        direction: Direction,
+    ) -> Trajectory {
         let Some(plan) = plan else { return self.step(position, v1, v2) };
+        let ends = (from_frame(v1, direction), from_frame(v2, direction));
         let start = from_frame(position, direction);
         let trajectory = plan.trajectory(start, ends, self.spec.period, &self.shape);
         match direction {
