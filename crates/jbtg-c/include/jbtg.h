@@ -20,7 +20,7 @@
 /* Memory of one joint's limits, planner and safe zone; filled by jbtg_joint_init, its content is private. */
 typedef struct jbtg_joint { uint64_t private_words[JBTG_JOINT_WORDS]; } jbtg_joint;
 
-/* Memory of one step; filled by jbtg_plan, jbtg_plan_waypoint and jbtg_plan_stop, its content is private. */
+/* Memory of one step; filled by the functions jbtg_plan..., its content is private. */
 typedef struct jbtg_step { uint64_t private_words[JBTG_STEP_WORDS]; } jbtg_step;
 
 /* Memory of one joint's states tick by tick; filled by jbtg_sampler_init, its content is private. */
@@ -395,8 +395,8 @@ jbtg_status jbtg_command_action(const jbtg_joint *joint,
 jbtg_status jbtg_plan(const jbtg_joint *joint, double position, double from, double to, jbtg_step *step);
 
 /*
- Plans the motion from `position` and `from` to the velocity `to` in exactly one period that goes furthest: through
- the greatest peak velocity on the way, or the least one for motion downwards.
+ Plans the motion from `position` and `from` to the velocity `to` in exactly one period through the greatest peak
+ velocity on the way, or the least one for motion downwards.
  */
 jbtg_status jbtg_plan_waypoint(const jbtg_joint *joint,
                                double position,
@@ -422,6 +422,19 @@ jbtg_status jbtg_plan_stop(const jbtg_joint *joint,
                            const jbtg_state *from,
                            jbtg_step *step,
                            bool *is_recovering);
+
+/*
+ Plans the stop of a `running` step from `time` seconds after its start on. It travels no farther, in either
+ direction, than finishing the step and braking then, so it keeps the position limits if the step was a safe one.
+ Follow the running step until `begin` seconds after its start, then `stop`. `is_recovering` is as for
+ jbtg_plan_stop; it may be NULL.
+ */
+jbtg_status jbtg_plan_interrupt(const jbtg_joint *joint,
+                                const jbtg_step *running,
+                                double time,
+                                jbtg_step *stop,
+                                double *begin,
+                                bool *is_recovering);
 
 /*
  Fills `sampler` for a joint at rest at `position`, with `ticks` samples in every period.

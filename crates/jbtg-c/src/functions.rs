@@ -149,8 +149,8 @@ pub extern "C" fn jbtg_plan(
     write(step, planned.map(|trajectory| Step { trajectory }).map_err(Status::from))
 }
 
-/// Plans the motion from `position` and `from` to the velocity `to` in exactly one period that goes furthest: through
-/// the greatest peak velocity on the way, or the least one for motion downwards.
+/// Plans the motion from `position` and `from` to the velocity `to` in exactly one period through the greatest peak
+/// velocity on the way, or the least one for motion downwards.
 #[unsafe(no_mangle)]
 pub extern "C" fn jbtg_plan_waypoint(
     joint: Option<&Joint>,
@@ -199,6 +199,32 @@ pub extern "C" fn jbtg_plan_stop(
     write(step, stop.map(|stop| Step { trajectory: stop.trajectory }).map_err(Status::from))
 }
 
+/// Plans the stop of a `running` step from `time` seconds after its start on. It travels no farther, in either
+/// direction, than finishing the step and braking then, so it keeps the position limits if the step was a safe one.
+/// Follow the running step until `begin` seconds after its start, then `stop`. `is_recovering` is as for
+/// jbtg_plan_stop; it may be NULL.
+#[unsafe(no_mangle)]
+pub extern "C" fn jbtg_plan_interrupt(
+    joint: Option<&Joint>,
+    running: Option<&Step>,
+    time: f64,
+    stop: Option<&mut MaybeUninit<Step>>,
+    begin: Option<&mut MaybeUninit<f64>>,
+    is_recovering: Option<&mut MaybeUninit<bool>>,
+) -> Status {
+    let (Some(joint), Some(running), Some(begin)) = (joint, running, begin) else {
+        return Status::NullPointer;
+    };
+    let planned = joint.zone.planner().interrupt(&running.trajectory, time);
+    if let Ok(planned) = &planned {
+        begin.write(planned.begin);
+        if let Some(flag) = is_recovering {
+            flag.write(planned.status != jbtg::StopStatus::WithinLimits);
+        }
+    }
+    write(stop, planned.map(|stop| Step { trajectory: stop.trajectory }).map_err(Status::from))
+}
+
 /// Fills `sampler` for a joint at rest at `position`, with `ticks` samples in every period.
 #[unsafe(no_mangle)]
 pub extern "C" fn jbtg_sampler_init(
@@ -244,4 +270,50 @@ pub extern "C" fn jbtg_sampler_advance(
 
 fn within(range: &SafeRange, velocity: f64) -> f64 {
     velocity.max(range.min).min(range.max)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::types::{JBTG_SMOOTHSTEP, JBTG_STRETCHED};
+
+    #[test]
+    fn an_interrupted_step_says_where_its_stop_begins() {
+        let interval = |bound: f64| Interval { min: -bound, max: bound };
+        let limits = Limits {
+            position: interval(0.5),
+            velocity: interval(0.15),
+            acceleration: interval(1.0),
+            jerk: interval(100.0),
+        };
+        let spec = Spec { limits, period: 0.05, shape: JBTG_SMOOTHSTEP, timing: JBTG_STRETCHED };
+        let joint = Joint::try_from(spec).unwrap_or_else(|status| panic!("{status:?}"));
+        let planner = joint.zone.planner();
+        let trajectory = planner.ramp(0.3, 0.01, -0.02).unwrap_or_else(|error| panic!("{error}"));
+        let mut postponed = 0;
+        for tick in 0..50 {
+            let time = 0.001 * f64::from(tick);
+            let (mut stop, mut begin) = (MaybeUninit::uninit(), MaybeUninit::new(f64::NAN));
+            let mut is_recovering = MaybeUninit::new(true);
+            let status = jbtg_plan_interrupt(
+                Some(&joint),
+                Some(&Step { trajectory }),
+                time,
+                Some(&mut stop),
+                Some(&mut begin),
+                Some(&mut is_recovering),
+            );
+            assert_eq!(status, Status::Ok);
+            // SAFETY: the status says that all three are written.
+            let (stop, begin, is_recovering) =
+                unsafe { (stop.assume_init(), begin.assume_init(), is_recovering.assume_init()) };
+            let expected = planner.interrupt(&trajectory, time).unwrap_or_else(|error| panic!("{error}"));
+            assert_eq!((begin, stop.trajectory), (expected.begin, expected.trajectory));
+            assert!(!is_recovering);
+            postponed += u32::from(begin > time);
+        }
+        assert!(0 < postponed && postponed < 50, "{postponed} of 50 stops wait for a later quintic");
+        let again = jbtg_plan_interrupt(Some(&joint), Some(&Step { trajectory }), 0.0, None, None, None);
+        assert_eq!(again, Status::NullPointer);
+    }
 }

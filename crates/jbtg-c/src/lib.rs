@@ -47,9 +47,9 @@ mod types;
 
 pub use functions::{
     jbtg_authority_of, jbtg_check_limits, jbtg_command_action, jbtg_command_velocity, jbtg_joint_init,
-    jbtg_plan, jbtg_plan_stop, jbtg_plan_waypoint, jbtg_reachable, jbtg_safe_range, jbtg_sampler_advance,
-    jbtg_sampler_command, jbtg_sampler_init, jbtg_sampler_upcoming, jbtg_status_text, jbtg_step_extrema,
-    jbtg_step_state_at, jbtg_stopping_distance,
+    jbtg_plan, jbtg_plan_interrupt, jbtg_plan_stop, jbtg_plan_waypoint, jbtg_reachable, jbtg_safe_range,
+    jbtg_sampler_advance, jbtg_sampler_command, jbtg_sampler_init, jbtg_sampler_upcoming, jbtg_status_text,
+    jbtg_step_extrema, jbtg_step_state_at, jbtg_stopping_distance,
 };
 pub use joint::{JOINT_WORDS, Joint, SAMPLER_WORDS, STEP_WORDS, Sampler, Step};
 pub use status::{RangeStatus, Status};

@@ -6,9 +6,9 @@ use std::mem::MaybeUninit;
 use jbtg_c::{
     Interval, JBTG_FASTEST, JBTG_SMOOTHSTEP, Joint, Limits, Spec, State, Status, jbtg_authority_of,
     jbtg_check_limits, jbtg_command_action, jbtg_command_velocity, jbtg_joint_init, jbtg_plan,
-    jbtg_plan_stop, jbtg_plan_waypoint, jbtg_reachable, jbtg_safe_range, jbtg_sampler_advance,
-    jbtg_sampler_command, jbtg_sampler_init, jbtg_sampler_upcoming, jbtg_status_text, jbtg_step_extrema,
-    jbtg_step_state_at, jbtg_stopping_distance,
+    jbtg_plan_interrupt, jbtg_plan_stop, jbtg_plan_waypoint, jbtg_reachable, jbtg_safe_range,
+    jbtg_sampler_advance, jbtg_sampler_command, jbtg_sampler_init, jbtg_sampler_upcoming, jbtg_status_text,
+    jbtg_step_extrema, jbtg_step_state_at, jbtg_stopping_distance,
 };
 
 const fn interval(min: f64, max: f64) -> Interval {
@@ -56,6 +56,7 @@ fn every_pointer_may_be_null() {
     assert_eq!(jbtg_step_state_at(None, 0.0, Some(&mut MaybeUninit::uninit())), null);
     assert_eq!(jbtg_step_extrema(None, None), null);
     assert_eq!(jbtg_plan_stop(Some(&joint), None, Some(&mut MaybeUninit::uninit()), None), null);
+    assert_eq!(jbtg_plan_interrupt(Some(&joint), None, 0.0, None, None, None), null);
     assert_eq!(jbtg_sampler_init(None, Some(&joint), 50, 0.3), null);
     assert_eq!(jbtg_sampler_command(None, 0.0), null);
     assert_eq!(jbtg_sampler_upcoming(None, None), null);
