@@ -23,9 +23,13 @@ pub(crate) enum Adversary {
     Faulty,
 }
 
-pub(crate) fn adversaries() -> impl Strategy<Value = Adversary> {
+pub(crate) const ADVERSARIES: [Adversary; 7] = {
     use Adversary::{Alternating, AlwaysMax, AlwaysMin, BangBang, Faulty, NearBound, Random};
-    prop::sample::select(vec![AlwaysMax, AlwaysMin, Alternating, Random, BangBang, NearBound, Faulty])
+    [AlwaysMax, AlwaysMin, Alternating, Random, BangBang, NearBound, Faulty]
+};
+
+pub(crate) fn adversaries() -> impl Strategy<Value = Adversary> {
+    prop::sample::select(ADVERSARIES.to_vec())
 }
 
 /// SplitMix64: deterministic, so that a failing case is its seed.

@@ -2,6 +2,7 @@
 
 mod adversary;
 mod api;
+mod braking;
 mod lowering;
 mod no_allocation;
 mod oracle;

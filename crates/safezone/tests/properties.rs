@@ -1,10 +1,11 @@
 //! What holds for every planner, state and policy.
 
 use jbtg::strategies::planners;
+use jbtg::{Interval, Limits, LimitsSpec, Planner, PlannerSpec, Shape, Timing};
 use proptest::prelude::*;
 use safezone::{BrakingTable, SafeZone};
 
-use crate::adversary::{adversaries, run, safe_state};
+use crate::adversary::{ADVERSARIES, adversaries, run, safe_state};
 
 /// Consecutive adversarial steps of one case.
 const STEPS: usize = 250;
@@ -18,6 +19,26 @@ fn cases(plain: u32) -> ProptestConfig {
 /// Where in an interval: often its very ends.
 fn shares() -> impl Strategy<Value = f64> {
     prop_oneof![1 => Just(0.0), 1 => Just(1.0), 1 => Just(0.5), 5 => 0.0..=1.0]
+}
+
+/// A sine's step from its lowest velocity to its highest overshoots most with the jerk bounds this far apart.
+#[test]
+fn steps_between_unequal_jerk_bounds_keep_every_limit() {
+    let limits = Limits::try_from(LimitsSpec {
+        position: Interval::new(-4.0, 4.0),
+        velocity: Interval::symmetric(1.0),
+        acceleration: Interval::symmetric(1.0),
+        jerk: Interval::new(-1.0, 0.49),
+    })
+    .unwrap();
+    let (shape, timing) = (Shape::SineQuintic, Timing::Stretched);
+    let planner = Planner::try_from(PlannerSpec { limits, shape, timing, period: 1.0 }).unwrap();
+    let zone = SafeZone::closed_form(planner).unwrap();
+    for start in [(0.0, 0.4218), (0.4218, 0.0), (0.4218, 1.0), (1.0, 0.4218)] {
+        for adversary in ADVERSARIES {
+            run(&zone, safe_state(&zone, start), (adversary, 7), STEPS).unwrap();
+        }
+    }
 }
 
 proptest! {
