@@ -109,3 +109,27 @@ impl Segment {
         }
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_rest_of_a_segment_is_the_segment_later_on() {
+        let whole = Segment { start: 2.0, duration: 0.5, coefficients: [0.3, -0.2, 0.5, 1.1, -0.7, 0.4] };
+        let rest = whole.from(0.2);
+        assert_eq!((rest.start, rest.duration), (2.2, 0.3));
+        for time in [0.0, 0.1, 0.3, 2.0] {
+            let (later, state) = (whole.state_at(0.2 + time), rest.state_at(time));
+            let pairs = [
+                (later.position, state.position),
+                (later.velocity, state.velocity),
+                (later.acceleration, state.acceleration),
+                (later.jerk, state.jerk),
+            ];
+            for (a, b) in pairs {
+                assert!((a - b).abs() <= 1e-14 * a.abs().max(1.0), "{later:?}, {state:?} after {time}");
+            }
+        }
+    }
+}

@@ -1,5 +1,7 @@
 //! Inputs that users of Ruckig reported as failures (pantor/ruckig, by issue number), adapted to velocity targets: what
 //! moves with an acceleration is stopped, what can start without one is ramped.
+//!
+//! Of issue 141 we have no input: the archives of issues that we could search do not hold it.
 
 use jbtg::{
     Interval, Limits, LimitsSpec, Planner, PlannerSpec, Quantity, Shape, State, StopStatus, Timing,

@@ -5,6 +5,7 @@ mod bernstein;
 mod issues;
 mod no_allocation;
 mod optimum;
+mod overshoot;
 mod paper;
 mod peers;
 mod properties;

@@ -131,6 +131,7 @@ proptest! {
 
 #[test]
 fn joints_of_different_periods_are_refused_by_name() {
+    assert_eq!(Synchronized::new([paper_planner(0.05); 3]).unwrap().period(), 0.05);
     let planners = [paper_planner(0.05), paper_planner(0.05), paper_planner(0.02)];
     let error = Synchronized::new(planners).unwrap_err();
     assert_eq!(error, SynchronizedError::Period { joint: 2, period: 0.02, expected: 0.05 });

@@ -4,6 +4,7 @@ mod adversary;
 mod api;
 mod braking;
 mod lowering;
+mod narrow;
 mod no_allocation;
 mod oracle;
 mod paper;
