@@ -1,6 +1,7 @@
 //! `tidy`: the layering of the workspace, and the rules of the sources that no compiler checks.
 
 mod allowed;
+mod arithmetic;
 mod layering;
 mod metadata;
 mod sources;

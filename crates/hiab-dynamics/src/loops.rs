@@ -88,7 +88,7 @@ impl ClosedLoop {
             Branch::Positive => 1.0,
             Branch::Negative => -1.0,
         };
-        let angle = |v: &Vector2<f64>| v.y.atan2(v.x);
+        let angle = |v: &Vector2<f64>| libm::atan2(v.y, v.x);
         let mut triangle = Triangle {
             a,
             b,
@@ -156,7 +156,7 @@ fn usable_strokes(
 fn close_fault(shape: &Shape, stroke: f64, main: String) -> CloseFault {
     let Shape { a, b, lambda, eta } = *shape;
     let along = lambda + stroke;
-    let length = along.hypot(eta);
+    let length = libm::hypot(along, eta);
     if along <= 0.0 {
         CloseFault::BehindHinge
     } else if length < (a - b).abs() {
@@ -164,8 +164,8 @@ fn close_fault(shape: &Shape, stroke: f64, main: String) -> CloseFault {
     } else if length > a + b {
         CloseFault::TooLong { main, gap: length - (a + b) }
     } else {
-        let angle = ((a * a + b * b - length * length) / (2.0 * a * b)).clamp(-1.0, 1.0).acos();
-        CloseFault::NearSingular { main, angle: angle.min(PI - angle), bound: MIN_SIN_AT_HINGE.asin() }
+        let angle = libm::acos(((a * a + b * b - length * length) / (2.0 * a * b)).clamp(-1.0, 1.0));
+        CloseFault::NearSingular { main, angle: angle.min(PI - angle), bound: libm::asin(MIN_SIN_AT_HINGE) }
     }
 }
 

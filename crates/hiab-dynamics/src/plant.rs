@@ -114,6 +114,6 @@ impl Friction {
         if self.coulomb == 0.0 {
             return viscous;
         }
-        viscous + self.coulomb * (velocity * self.inverse_transition).tanh()
+        viscous + self.coulomb * libm::tanh(velocity * self.inverse_transition)
     }
 }

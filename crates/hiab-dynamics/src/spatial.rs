@@ -66,7 +66,7 @@ impl Axis {
     /// `rotation`, followed inside by a rotation by `angle` \[rad\] about the axis.
     #[inline]
     pub(crate) fn turned(&self, rotation: &Matrix3<f64>, angle: f64) -> Matrix3<f64> {
-        let (s, c) = angle.sin_cos();
+        let (s, c) = libm::sincos(angle);
         match self {
             Self::Coordinate(i, sign) => {
                 let s = s * sign;

@@ -3,7 +3,7 @@
 
 use std::collections::HashMap;
 
-use nalgebra::{Matrix3, Rotation3, Vector3};
+use nalgebra::{Matrix3, Vector3};
 use urdf_rs::JointType;
 
 use crate::error::ModelError;
@@ -265,8 +265,23 @@ fn principal_moments(matrix: &Matrix3<f64>) -> [f64; 3] {
 
 fn pose(origin: &urdf_rs::Pose) -> Transform {
     let [roll, pitch, yaw] = origin.rpy.0;
-    let rotation = *Rotation3::from_euler_angles(roll, pitch, yaw).matrix();
-    Transform { rotation, translation: Vector3::from(origin.xyz.0) }
+    Transform { rotation: rotation(roll, pitch, yaw), translation: Vector3::from(origin.xyz.0) }
+}
+
+/// The URDF's rotation: about the fixed x axis by `roll`, then y by `pitch`, then z by `yaw` \[rad\].
+fn rotation(roll: f64, pitch: f64, yaw: f64) -> Matrix3<f64> {
+    let [(sr, cr), (sp, cp), (sy, cy)] = [roll, pitch, yaw].map(libm::sincos);
+    Matrix3::new(
+        cy * cp,
+        cy * sp * sr - sy * cr,
+        cy * sp * cr + sy * sr,
+        sy * cp,
+        sy * sp * sr + cy * cr,
+        sy * sp * cr - cy * sr,
+        -sp,
+        cp * sr,
+        cp * cr,
+    )
 }
 
 /// Refuses NaN and infinity.

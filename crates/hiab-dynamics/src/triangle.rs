@@ -86,15 +86,15 @@ impl Triangle {
         let inv_k = 1.0 / k;
         let inv_l2 = 1.0 / l2;
 
-        let phi = k.atan2(d);
+        let phi = libm::atan2(k, d);
         let phi_1 = u * inv_k;
         let phi_2 = inv_k * (1.0 - u * u * d * inv_k * inv_k);
 
-        let psi = k.atan2(0.5 * (a * a + l2 - b * b));
+        let psi = libm::atan2(k, 0.5 * (a * a + l2 - b * b));
         let psi_1 = -u * e * inv_l2 * inv_k;
         let psi_2 = inv_l2 * inv_k * (2.0 * u * u * e * inv_l2 + u * u * e * d * inv_k * inv_k - e - u * u);
 
-        let rho = if eta == 0.0 { 0.0 } else { eta.atan2(u) };
+        let rho = if eta == 0.0 { 0.0 } else { libm::atan2(eta, u) };
         let rho_1 = -eta * inv_l2;
         let rho_2 = 2.0 * u * eta * inv_l2 * inv_l2;
 

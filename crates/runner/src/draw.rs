@@ -33,7 +33,7 @@ impl Stream {
 
     /// Uniform in [`low`, `high`).
     pub fn uniform(&mut self, low: f64, high: f64) -> f64 {
-        let unit = (self.0.next_u64() >> 11) as f64 * (-53.0_f64).exp2();
+        let unit = (self.0.next_u64() >> 11) as f64 / (1_u64 << 53) as f64;
         low + unit * (high - low)
     }
 }

@@ -158,13 +158,13 @@ impl Surroundings {
 
     /// Uniform in [0, 1).
     fn unit(&mut self) -> f64 {
-        (self.noise.next_u64() >> 11) as f64 * (-53.0_f64).exp2()
+        (self.noise.next_u64() >> 11) as f64 / (1_u64 << 53) as f64
     }
 
     /// Standard normal, by Box and Muller.
     fn gaussian(&mut self) -> f64 {
         let (u, v) = (1.0 - self.unit(), self.unit());
-        (-2.0 * u.ln()).sqrt() * (std::f64::consts::TAU * v).cos()
+        (-2.0 * libm::log(u)).sqrt() * libm::cos(std::f64::consts::TAU * v)
     }
 }
 

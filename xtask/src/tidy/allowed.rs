@@ -44,7 +44,7 @@ pub(super) const ALLOWED: &[Allowed] = &[
     },
     Allowed {
         name: "hiab-dynamics",
-        normal: &["nalgebra", "ron", "serde", "thiserror", "urdf-rs", "xml-rs"],
+        normal: &["libm", "nalgebra", "ron", "serde", "thiserror", "urdf-rs", "xml-rs"],
         dev: &["adaptive-ctrl", "allocation-counter", "criterion", "proptest", "serde_json"],
         ..NOTHING
     },
@@ -74,6 +74,7 @@ pub(super) const ALLOWED: &[Allowed] = &[
             "jbtg",
             "safezone",
             "anyhow",
+            "libm",
             "rand_xoshiro",
             "ron",
             "serde",

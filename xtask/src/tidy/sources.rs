@@ -1,7 +1,7 @@
 //! Rules of the source files and manifests.
 
-use super::Problem;
 use super::metadata::{Package, Workspace};
+use super::{Problem, arithmetic};
 use anyhow::Context as _;
 use std::path::{Path, PathBuf};
 
@@ -30,7 +30,9 @@ pub(super) fn check(workspace: &Workspace, problems: &mut Vec<Problem>) -> anyho
         let lint = if exports { Lint::Deny } else { Lint::Forbid };
         for file in rust_files(package)? {
             let role = Role::of(&file, package);
-            problems.extend(file_problems(&place(workspace, &file), &read(&file)?, (role, lint)));
+            let (place, text) = (place(workspace, &file), read(&file)?);
+            problems.extend(file_problems(&place, &text, (role, lint)));
+            problems.extend(arithmetic::problems(&place, &text));
             count += 1;
         }
     }
