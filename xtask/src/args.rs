@@ -190,6 +190,16 @@ impl Values {
         Err(self.error(&format!("--{flag} must be a folder name ({wanted}), got `{text}`")))
     }
 
+    /// A policy: a name, which stands for one that comes with the project, or a path to a file that is there.
+    pub(crate) fn policy(&self, flag: &str) -> Result<Option<String>, UsageError> {
+        let Some(text) = self.text(flag) else { return Ok(None) };
+        if is_policy_name(text) {
+            return Ok(Some(text.to_owned()));
+        }
+        let path = self.existing_file(flag)?.and_then(|path| path.into_os_string().into_string().ok());
+        path.map(Some).ok_or_else(|| self.error(&format!("--{flag} `{text}` is not UTF-8")))
+    }
+
     /// A path, made absolute from where the user is.
     pub(crate) fn file(&self, flag: &str) -> Result<Option<PathBuf>, UsageError> {
         let Some(text) = self.text(flag) else { return Ok(None) };
@@ -206,6 +216,11 @@ impl Values {
         let what = if path.exists() { "is not a file" } else { "does not exist" };
         Err(self.error(&format!("--{flag}: {} {what}", path.display())))
     }
+}
+
+/// True of a word without folder and ending, which names a policy that comes with the project.
+pub(crate) fn is_policy_name(text: &str) -> bool {
+    !text.is_empty() && text.chars().all(|c| c.is_ascii_alphanumeric() || matches!(c, '-' | '_'))
 }
 
 fn is_help(word: &str) -> bool {

@@ -8,7 +8,7 @@ use std::process::ExitCode;
 impl Eval {
     pub(crate) fn call(&self) -> Call {
         Call::new(Binary::Runner, "eval")
-            .value("run", self.run.as_str())
+            .whose(&self.whose)
             .value("stage", self.stage)
             .option("episodes", self.episodes.map(|episodes| episodes.to_string()))
             .option("seed", self.seed.map(|seed| seed.to_string()))
@@ -16,7 +16,7 @@ impl Eval {
     }
 
     pub(crate) fn run(self) -> anyhow::Result<ExitCode> {
-        names::check_run(&self.run)?;
+        names::check_whose(&self.whose)?;
         self.call().run()
     }
 }

@@ -8,6 +8,7 @@ use std::process::ExitCode;
 
 impl Figures {
     fn check_names(&self) -> Result<(), UsageError> {
+        self.policy.iter().try_for_each(|policy| names::check_policy(policy))?;
         self.runs.iter().try_for_each(|run| names::check_run(run))
     }
 

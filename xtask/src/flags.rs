@@ -50,6 +50,7 @@ pub(crate) enum Invocation {
     Tables(Tables),
     Train(Train),
     Eval(Eval),
+    Play(Play),
     Figures(Figures),
     Report(Report),
     Runs(Runs),
@@ -93,9 +94,18 @@ pub(crate) enum Stages {
     One(&'static str),
 }
 
+/// Whose policy: the one or the other.
+#[derive(Debug, PartialEq)]
+pub(crate) enum Whose {
+    /// A run's, of the stage that the command names.
+    Run(String),
+    /// A policy that comes with the project, or the absolute path of a file.
+    Policy(String),
+}
+
 #[derive(Debug, PartialEq)]
 pub(crate) struct Eval {
-    pub(crate) run: String,
+    pub(crate) whose: Whose,
     pub(crate) stage: &'static str,
     pub(crate) episodes: Option<u64>,
     pub(crate) seed: Option<u64>,
@@ -103,9 +113,18 @@ pub(crate) struct Eval {
 }
 
 #[derive(Debug, PartialEq)]
+pub(crate) struct Play {
+    pub(crate) whose: Whose,
+    pub(crate) stage: Option<&'static str>,
+    pub(crate) episode: Option<u64>,
+    pub(crate) seed: Option<u64>,
+    pub(crate) json: Option<PathBuf>,
+}
+
+#[derive(Debug, PartialEq)]
 pub(crate) struct Figures {
     pub(crate) runs: Vec<String>,
-    pub(crate) policy: Option<PathBuf>,
+    pub(crate) policy: Option<String>,
     pub(crate) stage: Option<&'static str>,
     pub(crate) episodes: Option<u64>,
     pub(crate) out: Option<PathBuf>,
@@ -199,8 +218,8 @@ pub(crate) struct Search {
 /// `record`.
 #[derive(Debug)]
 pub(crate) struct Record {
-    pub(crate) run: String,
-    pub(crate) stage: &'static str,
+    pub(crate) whose: Whose,
+    pub(crate) stage: Option<&'static str>,
     pub(crate) episode: u64,
     pub(crate) out: PathBuf,
     pub(crate) region: Option<&'static str>,
@@ -238,16 +257,23 @@ impl Invocation {
                 plain: parsed.switch("plain"),
             }),
             "eval" => Self::Eval(Eval {
-                run: parsed.given("run", parsed.run_name("run")?)?,
+                whose: whose(&parsed)?,
                 stage: parsed.given("stage", parsed.one_of("stage", STAGES)?)?,
                 episodes: parsed.integer("episodes", 1)?,
+                seed: parsed.integer("seed", 0)?,
+                json: parsed.file("json")?,
+            }),
+            "play" => Self::Play(Play {
+                whose: whose(&parsed)?,
+                stage: stage_of_run(&parsed)?,
+                episode: parsed.integer("episode", 0)?,
                 seed: parsed.integer("seed", 0)?,
                 json: parsed.file("json")?,
             }),
             "figures" => {
                 let figures = figures(&parsed)?;
                 if figures.runs.is_empty() && figures.policy.is_none() {
-                    return Err(parsed.error("needs --run NAME or --policy FILE"));
+                    return Err(parsed.error("needs --run NAME or --policy NAME"));
                 }
                 Self::Figures(figures)
             }
@@ -310,8 +336,8 @@ impl Invocation {
             }),
             "ablation" => Self::Ablation(Ablation { json: parsed.file("json")?, out: parsed.file("out")? }),
             "record" => Self::Record(Record {
-                run: parsed.given("run", parsed.run_name("run")?)?,
-                stage: parsed.given("stage", parsed.one_of("stage", STAGES)?)?,
+                whose: whose(&parsed)?,
+                stage: stage_of_run(&parsed)?,
                 episode: parsed.given("episode", parsed.integer("episode", 0)?)?,
                 out: parsed.given("out", parsed.file("out")?)?,
                 region: parsed.one_of("region", STAGES)?,
@@ -328,11 +354,30 @@ impl Invocation {
     }
 }
 
+/// `--run` or `--policy`.
+fn whose(parsed: &Values) -> Result<Whose, UsageError> {
+    match (parsed.run_name("run")?, parsed.policy("policy")?) {
+        (Some(run), None) => Ok(Whose::Run(run)),
+        (None, Some(policy)) => Ok(Whose::Policy(policy)),
+        (Some(_), Some(_)) => Err(parsed.error("give either --run or --policy, not both")),
+        (None, None) => Err(parsed.error("needs --run NAME or --policy NAME")),
+    }
+}
+
+/// `--stage`, which says whose policy of a run is meant.
+fn stage_of_run(parsed: &Values) -> Result<Option<&'static str>, UsageError> {
+    let stage = parsed.one_of("stage", STAGES)?;
+    if stage.is_none() && parsed.switch("run") {
+        return Err(parsed.error("needs --stage STAGE with --run"));
+    }
+    Ok(stage)
+}
+
 /// What `figures` and `report` have in common.
 fn figures(parsed: &Values) -> Result<Figures, UsageError> {
     Ok(Figures {
         runs: parsed.run_names("run")?,
-        policy: parsed.existing_file("policy")?,
+        policy: parsed.policy("policy")?,
         stage: parsed.one_of("stage", STAGES)?,
         episodes: parsed.integer("episodes", 1)?,
         out: parsed.file("out")?,

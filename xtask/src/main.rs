@@ -15,6 +15,7 @@ mod footprint;
 mod help;
 mod load_chart;
 mod names;
+mod play;
 mod profile;
 mod record;
 mod runner;
@@ -60,6 +61,7 @@ fn dispatch(invocation: Invocation) -> anyhow::Result<ExitCode> {
         Invocation::Tables(flags) => flags.run(),
         Invocation::Train(flags) => flags.run(),
         Invocation::Eval(flags) => flags.run(),
+        Invocation::Play(flags) => flags.run(),
         Invocation::Figures(flags) => flags.run(),
         Invocation::Report(flags) => flags.run(),
         Invocation::Runs(flags) => flags.run(),

@@ -1,10 +1,14 @@
 //! Names of what is on disk, looked at before a program is built that would refuse them after minutes.
 
-use crate::args::{UsageError, unknown};
+use crate::args::{UsageError, is_policy_name, unknown};
+use crate::flags::Whose;
 use std::path::Path;
 
 /// Folder of the runs, in the workspace's root.
 const RUNS: &str = "runs";
+
+/// Folder of the policies that come with the project.
+const POLICIES: &str = "assets/policies";
 
 /// Folder of the scenarios.
 const SCENARIOS: &str = "assets/scenarios";
@@ -26,6 +30,35 @@ pub(crate) fn check_run(name: &str) -> Result<(), UsageError> {
         unknown("run", name, &known) + "; see `cargo xtask runs`"
     };
     Err(UsageError::new(message))
+}
+
+/// Refuses a policy's name that there is none of, with the nearest that is; a path was looked at before.
+///
+/// # Errors
+/// There is no file of that name.
+pub(crate) fn check_policy(policy: &str) -> Result<(), UsageError> {
+    if !is_policy_name(policy) {
+        return Ok(());
+    }
+    let is_policy = |path: &Path| path.extension().is_some_and(|end| end == "policy");
+    let known =
+        listed(POLICIES, |path| is_policy(path).then(|| path.file_stem()?.to_str().map(str::to_owned))?);
+    if known.iter().any(|known| known == policy) {
+        Ok(())
+    } else {
+        Err(UsageError::new(unknown("policy", policy, &known) + "; or the path of a file"))
+    }
+}
+
+/// Refuses a run or a policy that is not there.
+///
+/// # Errors
+/// As [`check_run`] and [`check_policy`].
+pub(crate) fn check_whose(whose: &Whose) -> Result<(), UsageError> {
+    match whose {
+        Whose::Run(run) => check_run(run),
+        Whose::Policy(policy) => check_policy(policy),
+    }
 }
 
 /// Refuses a scenario that is not there, with the nearest that is.

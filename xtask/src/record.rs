@@ -8,8 +8,8 @@ use std::process::ExitCode;
 impl Record {
     pub(crate) fn call(&self) -> Call {
         Call::new(Binary::Runner, "record")
-            .value("run", self.run.as_str())
-            .value("stage", self.stage)
+            .whose(&self.whose)
+            .option("stage", self.stage)
             .value("episode", self.episode.to_string())
             .value("out", self.out.as_os_str())
             .option("region", self.region)
@@ -17,7 +17,7 @@ impl Record {
     }
 
     pub(crate) fn run(self) -> anyhow::Result<ExitCode> {
-        names::check_run(&self.run)?;
+        names::check_whose(&self.whose)?;
         self.call().run()
     }
 }

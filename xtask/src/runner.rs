@@ -1,5 +1,6 @@
 //! Runs a binary of the `runner` package through cargo.
 
+use crate::flags::Whose;
 use anyhow::Context as _;
 use std::ffi::OsString;
 use std::process::{Command, ExitCode};
@@ -38,6 +39,14 @@ impl Call {
         match value {
             Some(value) => self.value(flag, value),
             None => self,
+        }
+    }
+
+    /// Adds whose policy is meant.
+    pub(crate) fn whose(self, whose: &Whose) -> Self {
+        match whose {
+            Whose::Run(run) => self.value("run", run),
+            Whose::Policy(policy) => self.value("policy", policy),
         }
     }
 

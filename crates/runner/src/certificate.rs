@@ -2,15 +2,16 @@
 
 use std::collections::BTreeMap;
 
-use serde::Serialize;
+use serde::{Deserialize, Serialize};
 
 use crate::evaluation::Violations;
 use crate::evidence::{Evidence, JointEvidence};
 use crate::stage::Stage;
 
 /// What `certificate.json` says.
-#[derive(Debug, Serialize)]
-pub struct Certificate<'a> {
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Certificate {
     /// Version of the file's format.
     pub schema: u32,
     /// The stage.
@@ -18,7 +19,7 @@ pub struct Certificate<'a> {
     /// The seed.
     pub seed: u64,
     /// Which plant was simulated.
-    pub plant: &'a str,
+    pub plant: String,
     /// Training episodes.
     pub episodes: u64,
     /// Training steps.
@@ -26,17 +27,18 @@ pub struct Certificate<'a> {
     /// Training and evaluation together: limits that did not hold.
     pub violations: Violations,
     /// Seen while training.
-    pub training: Part<'a>,
+    pub training: Part,
     /// Seen in the evaluation that closed the stage.
-    pub evaluation: Part<'a>,
+    pub evaluation: Part,
 }
 
 /// Evidence about one part of a run.
-#[derive(Debug, Serialize)]
-pub struct Part<'a> {
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Part {
     /// By joint: worst margins relative to the actuator's limits, of the reference (exact extrema) and of the actual
     /// motion, and the largest tracking errors.
-    pub joints: BTreeMap<&'a str, JointEvidence>,
+    pub joints: BTreeMap<String, JointEvidence>,
     /// Limits that did not hold.
     pub violations: Violations,
     /// Safe ranges computed.
@@ -57,12 +59,12 @@ pub struct Part<'a> {
     pub failsafe_count: u64,
 }
 
-impl<'a> Part<'a> {
+impl Part {
     /// The evidence, joint by joint under its name.
     #[must_use]
-    pub fn new(names: impl IntoIterator<Item = &'a str>, evidence: &Evidence) -> Self {
+    pub fn new<'a>(names: impl IntoIterator<Item = &'a str>, evidence: &Evidence) -> Self {
         Self {
-            joints: names.into_iter().zip(evidence.joints.iter().copied()).collect(),
+            joints: names.into_iter().map(str::to_owned).zip(evidence.joints.iter().copied()).collect(),
             violations: Violations {
                 reference: evidence.reference_violations,
                 actual: evidence.actual_violations,

@@ -198,6 +198,12 @@ impl Environment {
         self.tip.position
     }
 
+    /// Speed of the tip [m/s].
+    #[must_use]
+    pub fn tip_speed(&self) -> f64 {
+        norm(self.tip.velocity)
+    }
+
     /// The crane in motion.
     #[must_use]
     pub fn motion(&self) -> &Motion {

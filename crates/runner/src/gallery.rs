@@ -1,13 +1,11 @@
 //! Every figure of a run: plays episodes with its policy, reads what it left on disk, and draws.
 
-use std::path::{Path, PathBuf};
+use std::path::Path;
 use std::sync::Arc;
 
 use anyhow::{Context, Result, anyhow, ensure};
 use figures::{Figure, SvgTheme, Theme};
-use sac_burn::Policy;
 
-use crate::checkpoint::{self, Header};
 use crate::config::run_folder;
 use crate::draw::{Purpose, Stream};
 use crate::environment::{Ending, Environment};
@@ -15,7 +13,8 @@ use crate::machine::Machine;
 use crate::pictures::{self, Curve, Looks, Shown};
 use crate::recording::{self, Detail, Recording};
 use crate::stage::Stage;
-use crate::{store, training};
+use crate::store;
+use crate::trained::{Place, Trained};
 
 /// Pixels of a PNG for each of a figure.
 const PNG_SCALE: f64 = 2.0;
@@ -30,8 +29,8 @@ pub struct Source {
     pub runs: Vec<String>,
     /// Stage whose policy is shown; the last one that was trained if `None`.
     pub stage: Option<Stage>,
-    /// A checkpoint whose policy is shown.
-    pub policy: Option<PathBuf>,
+    /// A policy that is shown: the name of one that comes with the project, or a file.
+    pub policy: Option<String>,
     /// Episodes that are played.
     pub episodes: u64,
 }
@@ -44,17 +43,8 @@ pub type Named = (String, Figure);
 /// # Errors
 /// No run and no policy is given, one is missing or was not trained, or a file of it is damaged.
 pub fn draw(source: &Source) -> Result<Vec<Named>> {
-    let path = match &source.policy {
-        Some(path) => path.clone(),
-        None => {
-            let run = source.runs.first().ok_or_else(|| anyhow!("give --run NAME or --policy FILE"))?;
-            trained_policy(run, source.stage)?
-        }
-    };
-    ensure!(path.exists(), "{} does not exist", path.display());
     ensure!(source.episodes > 0, "--episodes must be at least 1");
-    let (header, agent) = checkpoint::read(&path)?;
-    let mut figures = of_policy(agent.policy(), &header, source.episodes)?;
+    let mut figures = of_policy(&shown(source)?.read()?, source.episodes)?;
     for stage in Stage::ALL {
         let curves = curves(&source.runs, stage)?;
         if !curves.is_empty() {
@@ -78,31 +68,27 @@ pub fn write(figures: &[Named], folder: &Path) -> Result<()> {
     Ok(())
 }
 
-/// The best checkpoint of a run's stage, or of the last stage that has one.
-fn trained_policy(run: &str, stage: Option<Stage>) -> Result<PathBuf> {
-    let path_of = |stage: Stage| training::best(&run_folder(run, stage));
-    let last = Stage::ALL.into_iter().rev().find(|&stage| path_of(stage).exists());
-    let wanted = stage.or(last).unwrap_or(Stage::Purple);
-    let path = path_of(wanted);
-    ensure!(
-        path.exists(),
-        "run '{run}' has no trained stage {wanted}: {} is missing; first run: cargo xtask train --stage {wanted} --run \
-         {run}",
-        path.display()
-    );
-    Ok(path)
+/// The policy that was named, or that of the first run's stage, or of the last stage that it has trained.
+fn shown(source: &Source) -> Result<Place> {
+    if let Some(policy) = &source.policy {
+        return Ok(Place::Named(policy.clone()));
+    }
+    let run = source.runs.first().ok_or_else(|| anyhow!("give --run NAME or --policy FILE"))?;
+    let place = |stage: Stage| Place::Run(run.clone(), stage);
+    let last = Stage::ALL.into_iter().rev().find(|&stage| place(stage).file().is_ok());
+    Ok(place(source.stage.or(last).unwrap_or(Stage::Purple)))
 }
 
 /// Figures of a policy and its machine.
-fn of_policy(policy: &Policy, header: &Header, episodes: u64) -> Result<Vec<Named>> {
-    let machine = Arc::new(Machine::load(&header.config)?);
-    let urdf = &header.config.crane.urdf;
+fn of_policy(trained: &Trained, episodes: u64) -> Result<Vec<Named>> {
+    let machine = trained.machine()?;
+    let urdf = &trained.config.crane.urdf;
     let looks = Looks::from_urdf(&store::read_text(urdf)?).with_context(|| urdf.display().to_string())?;
-    let recordings = play_all(policy, header, &machine, episodes)?;
+    let recordings = play_all(trained, &machine, episodes)?;
     let chosen = most_telling(&recordings);
     let mut environment = Environment::new(Arc::clone(&machine), false);
     let episode = &recordings[chosen].episode;
-    let recording = play(policy, header, &mut environment, episode, Detail::Ticks)?;
+    let recording = play(trained, &mut environment, episode, Detail::Ticks)?;
     let shown = Shown { machine: &machine, looks: &looks, recording: &recording };
     let joint = shown.busiest();
     let others: Vec<Recording> = recordings.iter().take(FAINT).cloned().collect();
@@ -122,22 +108,17 @@ fn of_policy(policy: &Policy, header: &Header, episodes: u64) -> Result<Vec<Name
 }
 
 /// The evaluation's first episodes, shared among the machine's cores; which core played one does not matter.
-fn play_all(
-    policy: &Policy,
-    header: &Header,
-    machine: &Arc<Machine>,
-    episodes: u64,
-) -> Result<Vec<Recording>> {
+fn play_all(trained: &Trained, machine: &Arc<Machine>, episodes: u64) -> Result<Vec<Recording>> {
     let workers = std::thread::available_parallelism().map_or(1, |n| n.get() as u64);
     let part = |worker: u64| -> Result<Vec<(u64, Recording)>> {
         let mut environment = Environment::new(Arc::clone(machine), false);
         (worker..episodes)
             .step_by(workers as usize)
             .map(|number| {
-                let (seed, stage) = (header.config.seed, header.stage);
+                let (seed, stage) = (trained.config.seed, trained.stage);
                 let mut stream = Stream::of_episode(seed, Purpose::Evaluation, stage, number);
                 let episode = environment.draw(machine.regions().of(stage), &mut stream)?;
-                Ok((number, play(policy, header, &mut environment, &episode, Detail::Steps)?))
+                Ok((number, play(trained, &mut environment, &episode, Detail::Steps)?))
             })
             .collect()
     };
@@ -154,16 +135,15 @@ fn play_all(
 }
 
 fn play(
-    policy: &Policy,
-    header: &Header,
+    trained: &Trained,
     environment: &mut Environment,
     episode: &crate::environment::Episode,
     detail: Detail,
 ) -> Result<Recording> {
-    let mut input = vec![0.0; header.scaling.len()];
+    let mut input = vec![0.0; trained.scaling.len()];
     recording::play(environment, episode, detail, |environment, action| {
-        environment.observe(&header.scaling, &mut input);
-        policy.act(&input, action);
+        environment.observe(&trained.scaling, &mut input);
+        trained.policy.act(&input, action);
     })
 }
 

@@ -43,6 +43,8 @@ pub mod command;
 pub mod config;
 pub mod control;
 pub mod course;
+pub mod difference;
+pub mod digest;
 pub mod draw;
 pub mod environment;
 pub mod evidence;
@@ -73,10 +75,14 @@ pub mod checkpoint;
 pub mod curriculum;
 #[cfg(feature = "training")]
 pub mod evaluation;
+#[cfg(feature = "training")]
+pub mod frame;
 #[cfg(all(feature = "figures", feature = "training"))]
 pub mod gallery;
 #[cfg(feature = "training")]
 pub mod interrupt;
+#[cfg(feature = "training")]
+pub mod play;
 #[cfg(feature = "training")]
 pub mod progress;
 #[cfg(all(feature = "figures", feature = "training"))]
@@ -85,5 +91,7 @@ pub mod report;
 pub mod search;
 #[cfg(feature = "training")]
 pub mod tensorboard;
+#[cfg(feature = "training")]
+pub mod trained;
 #[cfg(feature = "training")]
 pub mod training;

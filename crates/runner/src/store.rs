@@ -1,7 +1,7 @@
 //! Files on disk: read with the path in every error, written whole or not at all.
 
 use std::fs::{self, File, OpenOptions};
-use std::io::{Seek, SeekFrom, Write};
+use std::io::{Read, Seek, SeekFrom, Write};
 use std::path::{Path, PathBuf};
 
 use anyhow::{Context, Result, ensure};
@@ -20,6 +20,17 @@ pub fn read_text(path: &Path) -> Result<String> {
 /// The file is missing or unreadable.
 pub fn read_bytes(path: &Path) -> Result<Vec<u8>> {
     fs::read(path).with_context(|| format!("cannot read {}", path.display()))
+}
+
+/// The first bytes of a file, at most `count`: enough to tell what it is.
+///
+/// # Errors
+/// The file is missing or unreadable.
+pub fn read_start(path: &Path, count: usize) -> Result<Vec<u8>> {
+    let mut bytes = Vec::new();
+    let read = File::open(path).and_then(|file| file.take(count as u64).read_to_end(&mut bytes));
+    read.with_context(|| format!("cannot read {}", path.display()))?;
+    Ok(bytes)
 }
 
 /// Writes `contents` to `path` whole or not at all.
@@ -63,6 +74,15 @@ fn temporary_beside(path: &Path) -> PathBuf {
     let mut name = path.file_name().unwrap_or_default().to_os_string();
     name.push(format!(".{}.partial", std::process::id()));
     path.with_file_name(name)
+}
+
+/// The most memory that this process has held at once \[bytes\], as Linux tells it; `None` elsewhere.
+#[must_use]
+pub fn peak_memory() -> Option<u64> {
+    let status = fs::read_to_string("/proc/self/status").ok()?;
+    let line = status.lines().find_map(|line| line.strip_prefix("VmHWM:"))?;
+    let kibibytes: u64 = line.trim().strip_suffix("kB")?.trim().parse().ok()?;
+    Some(1024 * kibibytes)
 }
 
 /// A file that only grows, line by line or record by record, and can be cut back to where a checkpoint was made.

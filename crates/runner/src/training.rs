@@ -9,7 +9,7 @@ use std::sync::Arc;
 use std::time::Instant;
 
 use anyhow::{Context, Result, ensure};
-use sac_burn::Agent;
+use sac_burn::{Agent, Policy};
 
 use self::overlap::Played;
 use self::record::{EpisodeRecord, Means, Recorder};
@@ -18,6 +18,7 @@ use crate::checkpoint::{self, Header};
 use crate::command::Interrupted;
 use crate::config::{ConfigSpec, Goal, run_folder};
 use crate::curriculum::{EpisodeResult, Mastery};
+use crate::digest::Digest;
 use crate::draw::{Purpose, Stream};
 use crate::environment::{Ending, Environment};
 use crate::evaluation::{self, Evaluation, Plan, Violations};
@@ -27,7 +28,8 @@ use crate::machine::{Machine, short};
 use crate::observation::Scaling;
 use crate::progress::{Display, Learner, Progress, Status, Worst};
 use crate::stage::Stage;
-use crate::store;
+use crate::trained::{self, Trained};
+use crate::{difference, store};
 
 /// Which training is wanted.
 #[derive(Clone, Debug)]
@@ -61,6 +63,8 @@ pub struct Finished {
     pub stage: Stage,
     /// Share of successes over the last episodes of the training.
     pub window_success_rate: f64,
+    /// Digest of `metrics.jsonl`: equal for equal trainings.
+    pub digest: Digest,
     /// Folder of the results.
     pub folder: PathBuf,
 }
@@ -84,9 +88,10 @@ impl fmt::Display for Finished {
             f,
             "  limits                     {reference} violations of the reference, {actual} of the actual motion"
         )?;
+        writeln!(f, "  metrics digest             {}", self.digest)?;
         writeln!(
             f,
-            "  in {}: eval.json, certificate.json, metrics.jsonl, timing.json, checkpoints",
+            "  in {}: {stage}.policy, eval.json, certificate.json, metrics.jsonl, timing.json, checkpoints",
             self.folder.display()
         )
     }
@@ -118,6 +123,10 @@ struct TimeSpent {
     total: f64,
     steps: u64,
     updates: u64,
+    /// The most that the process held at once \[bytes\]; `None` where the system does not tell.
+    peak_memory: Option<u64>,
+    /// For comparison with another machine, which is why it stands beside its times.
+    metrics_digest: Option<Digest>,
 }
 
 impl Training {
@@ -184,19 +193,15 @@ impl Training {
         let (header, agent) = checkpoint::read(&path)?;
         ensure!(header.stage == *stage, "{} is of stage {}, not {stage}", path.display(), header.stage);
         let config = header.config;
-        if let Some(seed) = seed {
-            ensure!(
-                seed == config.seed,
-                "{} was trained with seed {}, not {seed}; leave --seed away, or name another run with --run",
-                folder.display(),
-                config.seed
-            );
-        }
-        if let Some(wanted) = wanted {
-            same_configuration(&config, wanted).with_context(|| {
-                format!("{} cannot be resumed with another configuration", folder.display())
-            })?;
-        }
+        let mut wanted = wanted.cloned().unwrap_or_else(|| config.clone());
+        wanted.seed = seed.unwrap_or(wanted.seed);
+        same_configuration(&config, &wanted).with_context(|| {
+            format!(
+                "{} cannot be resumed with another configuration or seed; leave --config and --seed away, or name \
+                 another run with --run",
+                folder.display()
+            )
+        })?;
         let machine = Arc::new(Machine::load(&config)?);
         let recorder = Recorder::reopen(&folder, header.metrics_length, header.events_length)?;
         Ok(Self {
@@ -252,6 +257,9 @@ impl Training {
         let evaluation = self.close()?;
         progress.finish();
         self.time.total = started.elapsed().as_secs_f64();
+        self.time.peak_memory = store::peak_memory();
+        let digest = Digest::of(&store::read_bytes(&self.folder.join(record::METRICS))?);
+        self.time.metrics_digest = Some(digest);
         write_json(&self.folder.join("timing.json"), &self.time)?;
         Ok(Finished {
             episodes: self.mastery.episodes,
@@ -260,6 +268,7 @@ impl Training {
             violations: violations(&[&self.evidence, &evaluation.evidence]),
             stage: self.stage,
             window_success_rate: self.mastery.success_rate(),
+            digest,
             folder: self.folder,
             evaluation,
         })
@@ -380,7 +389,7 @@ impl Training {
         if self.mastery.best_confirmed.is_none() {
             self.save(&path)?;
         }
-        let (_, agent) = checkpoint::read(&path)?;
+        let (best, agent) = checkpoint::read(&path)?;
         let plan = self.plan(Purpose::Evaluation);
         let evaluation = evaluation::evaluate(agent.policy(), &self.scaling, &self.machine, plan)?;
         write_json(&self.folder.join("eval.json"), &evaluation.summary)?;
@@ -389,7 +398,7 @@ impl Training {
             schema: 1,
             stage: self.stage,
             seed: self.config.seed,
-            plant: &self.config.crane.plant,
+            plant: self.config.crane.plant.clone(),
             episodes: self.mastery.episodes,
             steps: self.steps,
             violations: violations(&[&self.evidence, &evaluation.evidence]),
@@ -397,7 +406,33 @@ impl Training {
             evaluation: Part::new(names(), &evaluation.evidence),
         };
         write_json(&self.folder.join("certificate.json"), &certificate)?;
+        let header = trained::Header {
+            program: trained::program(),
+            stage: self.stage,
+            seed: self.config.seed,
+            episodes: best.mastery.episodes,
+            steps: best.steps,
+            total_steps: agent.steps(),
+            evaluation: evaluation.summary.clone(),
+            certificate,
+            scaling: self.scaling.clone(),
+            config: self.config.clone(),
+        };
+        self.write_policy(&header, agent.policy())?;
         Ok(evaluation)
+    }
+
+    /// Writes the policy's file, and reads it again to see that it is what was evaluated.
+    fn write_policy(&self, header: &trained::Header, policy: &Policy) -> Result<()> {
+        let path = trained::file_of(&self.folder, self.stage);
+        trained::write(&path, header, policy)?;
+        let read = Trained::read(&path)?;
+        ensure!(
+            read.policy == *policy && read.header.as_ref() == Some(header),
+            "{} is not what was evaluated",
+            path.display()
+        );
+        Ok(())
     }
 
     fn save_latest(&mut self) -> Result<()> {
@@ -455,16 +490,11 @@ fn inherit(path: &Path, config: &ConfigSpec, scaling: &Scaling) -> Result<Agent>
     Ok(agent)
 }
 
-/// Refuses another configuration and says which field differs.
+/// Refuses another configuration and says which fields differ.
 fn same_configuration(trained: &ConfigSpec, wanted: &ConfigSpec) -> Result<()> {
-    let (trained, wanted) = (trained.to_ron()?, wanted.to_ron()?);
-    let differing = trained.lines().zip(wanted.lines()).find(|(ours, theirs)| ours != theirs);
-    match differing {
-        None => Ok(()),
-        Some((ours, theirs)) => {
-            anyhow::bail!("the run has `{}`, wanted is `{}`", ours.trim(), theirs.trim())
-        }
-    }
+    let found = difference::differences(trained, wanted)?;
+    ensure!(found.is_empty(), "{}", found.join("; "));
+    Ok(())
 }
 
 fn write_json(path: &Path, value: &impl serde::Serialize) -> Result<()> {

@@ -4,43 +4,16 @@
 mod support;
 
 use std::fs;
-use std::process::{Command, Output, Stdio};
+use std::process::{Command, Stdio};
 
 use runner::config::ConfigSpec;
 use runner::stage::Stage;
 use serde_json::Value;
+use support::learning::{runner, small_project, train};
 use support::{Project, check_refusal, check_success};
 
 /// Episodes of a small training; half of them is a whole number too.
 const EPISODES: u64 = 12;
-
-/// A project whose default configuration is small: networks of 16, episodes of 20 steps, updates from step 60 on.
-fn small_project() -> Project {
-    let project = Project::new();
-    let mut config = ConfigSpec::read(&project.path(runner::config::DEFAULT)).unwrap();
-    let learner = sac_burn::ConfigSpec {
-        hidden: vec![16, 16],
-        batch_size: 16,
-        random_steps: 60,
-        update_after: 60,
-        replay_capacity: 2_000,
-        ..config.learner.spec().clone()
-    };
-    config.learner = sac_burn::Config::try_from(learner).unwrap();
-    config.task.max_steps = 20;
-    config.curriculum.purple.confirm_episodes = 4;
-    config.curriculum.checkpoint_every = 50;
-    project.write(runner::config::DEFAULT, config.to_ron().unwrap());
-    project
-}
-
-fn runner() -> Command {
-    Command::new(env!("CARGO_BIN_EXE_runner"))
-}
-
-fn train(project: &Project, arguments: &str) -> Output {
-    project.run(runner(), &format!("train --quiet {arguments}"))
-}
 
 fn json(project: &Project, path: &str) -> Value {
     serde_json::from_str(&project.text(path)).unwrap()
@@ -278,9 +251,33 @@ fn a_run_is_not_resumed_with_another_configuration_or_seed() {
     let project = small_project();
     check_success(&train(&project, "--stage purple --run a --episodes 4"));
     let other = project.text(runner::config::DEFAULT).replace("discount: 0.99", "discount: 0.9");
-    project.write("other.ron", other);
-    check_refusal(&train(&project, "--stage purple --run a --resume --config other.ron"), &["discount"]);
-    check_refusal(&train(&project, "--stage purple --run a --resume --seed 9"), &["seed 0", "9"]);
+    project.write("other.ron", other.replace("reach_distance: 0.05", "reach_distance: 0.06"));
+    let refused = train(&project, "--stage purple --run a --resume --config other.ron");
+    check_refusal(
+        &refused,
+        &[
+            "learner.discount: the run has 0.99, wanted is 0.9;",
+            "task.reach_distance: the run has 0.05, wanted is 0.06",
+        ],
+    );
+    let refused = train(&project, "--stage purple --run a --resume --seed 9");
+    check_refusal(&refused, &["runs/a/purple", "seed: the run has 0, wanted is 9"]);
+}
+
+#[test]
+fn what_a_run_was_begun_with_may_be_given_again_and_goes_on_in_the_next_stage() {
+    let project = small_project();
+    project
+        .write("mine.ron", project.text(runner::config::DEFAULT).replace("discount: 0.99", "discount: 0.9"));
+    let given = "--run a --seed 5 --config mine.ron";
+    check_success(&train(&project, &format!("--stage purple {given} --episodes 4")));
+    check_success(&train(&project, &format!("--stage purple {given} --resume --episodes 5")));
+    // The default configuration has another seed and another discount; the run's own is taken.
+    check_success(&train(&project, "--all --resume --run a --episodes 6"));
+    for stage in Stage::ALL {
+        let config = ConfigSpec::read(&project.path(&format!("runs/a/{stage}/config.ron"))).unwrap();
+        assert_eq!((config.seed, config.learner.spec().discount), (5, 0.9), "{stage}");
+    }
 }
 
 #[test]

@@ -37,6 +37,9 @@ const fn switch(name: &'static str, help: &'static str) -> Flag {
     Flag { name, value: None, required: false, repeated: false, help }
 }
 
+/// What `--policy` takes.
+const POLICY: &str = "policy: purple, yellow or orange of assets/policies, or a policy's file or checkpoint";
+
 /// Every command, in the order in which a newcomer needs them.
 pub(crate) const COMMANDS: &[Command] = &[
     Command {
@@ -59,6 +62,10 @@ pub(crate) const COMMANDS: &[Command] = &[
             optional("episodes", "N", "stop after so many episodes, instead of the configuration's"),
             optional("config", "FILE", "configuration, instead of assets/config/default.ron"),
             switch("resume", "continue from the run's latest checkpoint"),
+            switch(
+                "deterministic",
+                "the same numbers on every x86-64 machine; always so, the flag changes nothing",
+            ),
             switch("quiet", "no progress on standard error"),
             switch("plain", "progress as lines, on a terminal too"),
         ],
@@ -68,20 +75,38 @@ pub(crate) const COMMANDS: &[Command] = &[
         name: "eval",
         summary: "Evaluate a trained policy, without exploration",
         flags: &[
-            required("run", "NAME", "folder of the run under runs/"),
-            required("stage", "STAGE", "purple, yellow or orange"),
+            optional(
+                "run",
+                "NAME",
+                "folder of the run under runs/: its policy of the stage; this or --policy",
+            ),
+            optional("policy", "NAME", POLICY),
+            required("stage", "STAGE", "purple, yellow or orange: where starts and targets lie"),
             optional("episodes", "N", "number of episodes"),
             optional("seed", "N", "seed of the starts and targets"),
             optional("json", "FILE", "write the result there as JSON as well"),
         ],
-        example: "cargo xtask eval --run first --stage purple --episodes 200",
+        example: "cargo xtask eval --policy orange --stage orange --episodes 200",
+    },
+    Command {
+        name: "play",
+        summary: "Play one episode of a trained policy and print it step by step",
+        flags: &[
+            optional("run", "NAME", "folder of the run under runs/; this, with --stage, or --policy"),
+            optional("policy", "NAME", POLICY),
+            optional("stage", "STAGE", "where start and target lie, instead of the policy's own stage"),
+            optional("episode", "N", "number of the episode, as in an evaluation (default 0)"),
+            optional("seed", "N", "seed of start and target, instead of the policy's"),
+            optional("json", "FILE", "write the episode there as JSON as well"),
+        ],
+        example: "cargo xtask play --policy orange --episode 3",
     },
     Command {
         name: "figures",
         summary: "Draw a run: workspace, postures, safe zone, motion, tracking, margins, learning",
         flags: &[
             repeated("run", "NAME", "run under runs/; more of them add to the learning curves"),
-            optional("policy", "FILE", "checkpoint whose policy is shown, instead of the first run's best"),
+            optional("policy", "NAME", "policy that is shown, a name or a file, instead of the first run's"),
             optional("stage", "STAGE", "stage whose policy is shown, instead of the last one trained"),
             optional("episodes", "N", "episodes to play (default 60)"),
             optional("out", "DIR", "folder for the pictures, instead of runs/NAME/figures"),
@@ -93,7 +118,7 @@ pub(crate) const COMMANDS: &[Command] = &[
         summary: "Write a run as one page: results, certificate, figures, configuration, commands",
         flags: &[
             repeated("run", "NAME", "run under runs/; more of them are compared"),
-            optional("policy", "FILE", "checkpoint whose policy is shown, instead of the first run's best"),
+            optional("policy", "NAME", "policy that is shown, a name or a file, instead of the first run's"),
             optional("stage", "STAGE", "stage whose policy is shown, instead of the last one trained"),
             optional("episodes", "N", "episodes to play for the figures (default 60)"),
             optional("out", "FILE", "the page, instead of runs/NAME/report.html"),
@@ -228,12 +253,13 @@ pub(crate) const COMMANDS: &[Command] = &[
         name: "record",
         summary: "Record one episode of a trained policy, for scenarios",
         flags: &[
-            required("run", "NAME", "folder of the run under runs/"),
-            required("stage", "STAGE", "purple, yellow or orange: whose policy"),
+            optional("run", "NAME", "folder of the run under runs/; this, with --stage, or --policy"),
+            optional("policy", "NAME", POLICY),
+            optional("stage", "STAGE", "purple, yellow or orange: whose policy of the run"),
             required("episode", "N", "number of the episode"),
             required("out", "FILE", "where the actions go"),
             optional("region", "STAGE", "where start and target lie, instead of the stage's region"),
-            optional("seed", "N", "seed of start and target, instead of the run's"),
+            optional("seed", "N", "seed of start and target, instead of the policy's"),
         ],
         example: "cargo xtask record --run first --stage purple --episode 0 --out episode.ron",
     },

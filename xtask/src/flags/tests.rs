@@ -19,6 +19,7 @@ fn cargo_line(line: &str) -> String {
         Invocation::Tables(flags) => flags.call(),
         Invocation::Train(flags) => flags.call(),
         Invocation::Eval(flags) => flags.call(),
+        Invocation::Play(flags) => flags.call(),
         Invocation::Figures(flags) => flags.call(),
         Invocation::Report(flags) => flags.call(),
         Invocation::Runs(flags) => flags.call(),
@@ -56,6 +57,13 @@ fn flags_reach_the_child_in_one_form() {
         (
             "eval --stage=orange --run x --episodes 5 --seed 0",
             format!("{RUNNER} eval --run x --stage orange --episodes 5 --seed 0"),
+        ),
+        ("eval --policy orange --stage orange", format!("{RUNNER} eval --policy orange --stage orange")),
+        ("play --policy yellow --episode 0", format!("{RUNNER} play --policy yellow --episode 0")),
+        ("play --run a --stage purple --seed 3", format!("{RUNNER} play --run a --stage purple --seed 3")),
+        (
+            "record --policy purple --episode 1 --out /x.ron",
+            format!("{RUNNER} record --policy purple --episode 1 --out /x.ron"),
         ),
         (
             "figures --run b --stage purple --run=a --episodes 9",
@@ -146,7 +154,10 @@ fn what_is_missing_is_named() {
     assert!(refusal("train --stage purple --all").contains("not both"));
     assert!(refusal("eval --stage purple").contains("needs --run NAME"));
     assert!(refusal("soak --json x").contains("needs --steps N, --seed S"));
-    assert!(refusal("figures --out x").contains("needs --run NAME or --policy FILE"));
+    assert!(refusal("play --run a").contains("needs --stage STAGE with --run"));
+    assert!(refusal("play --run a --policy b").contains("not both"));
+    assert!(refusal("play --policy gone.policy").contains("gone.policy does not exist"));
+    assert!(refusal("figures --out x").contains("needs --run NAME or --policy NAME"));
     assert!(refusal("report --open").contains("needs --run NAME"));
     assert!(refusal("train --stage --run x").contains("`--stage` needs a value: --stage STAGE"));
     assert!(refusal("train --all --run").contains("needs a value"));

@@ -1,9 +1,8 @@
-//! Commands that learn or use a policy: `train`, `eval`, `record`, `search`, `figures` and `report`.
+//! Commands that learn or use a policy: `train`, `eval`, `play`, `record`, `search`, `figures` and `report`.
 #![forbid(unsafe_code)]
 
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
-use std::sync::Arc;
 
 use anyhow::{Result, anyhow, bail, ensure};
 use runner::actions::Take;
@@ -12,11 +11,11 @@ use runner::config::{self, ConfigSpec, run_folder};
 use runner::draw::Purpose;
 use runner::evaluation::{self, Plan};
 use runner::interrupt::Stop;
-use runner::machine::Machine;
 use runner::progress::Display;
 use runner::stage::Stage;
+use runner::trained::{Place, Trained};
 use runner::training::{self, Request, Training};
-use runner::{actions, checkpoint, command, search, store};
+use runner::{actions, command, play, search, store};
 #[cfg(feature = "figures")]
 use runner::{gallery, report};
 
@@ -39,14 +38,15 @@ fn main() -> ExitCode {
 
 fn dispatch(command: &str, words: Vec<String>) -> Result<String> {
     match command {
-        "train" => train(Arguments::parse(words, &["all", "resume", "quiet", "plain"])?),
+        "train" => train(Arguments::parse(words, &["all", "resume", "deterministic", "quiet", "plain"])?),
         "eval" => eval(Arguments::parse(words, &[])?),
+        "play" => play(Arguments::parse(words, &[])?),
         "record" => record(Arguments::parse(words, &[])?),
         "search" => search(Arguments::parse(words, &["quiet"])?),
         "figures" => figures(Arguments::parse(words, &[])?),
         "report" => report(Arguments::parse(words, &["open"])?),
         _ => bail!(
-            "no command is called '{command}'; there are train, eval, record, search, figures and report"
+            "no command is called '{command}'; there are train, eval, play, record, search, figures and report"
         ),
     }
 }
@@ -59,6 +59,8 @@ fn train(mut arguments: Arguments) -> Result<String> {
     let episodes: Option<u64> = arguments.optional("episodes")?;
     let file: Option<PathBuf> = arguments.optional("config")?;
     let resume = arguments.switch("resume")?;
+    // Accepted so that it may be asked for: no training here is anything else.
+    arguments.switch("deterministic")?;
     let display = match (arguments.switch("quiet")?, arguments.switch("plain")?) {
         (true, _) => Display::Quiet,
         (false, true) => Display::Lines,
@@ -80,9 +82,12 @@ fn train(mut arguments: Arguments) -> Result<String> {
         let training = if resume && (begun || !all) {
             Training::resume(&request, wanted.as_ref(), seed)?
         } else {
-            let mut config = match &wanted {
-                Some(config) => config.clone(),
-                None => ConfigSpec::read(Path::new(config::DEFAULT))?,
+            let mut config = match (&wanted, stage.before()) {
+                (Some(config), _) => config.clone(),
+                (None, Some(before)) if begun_config(&run, before).exists() => {
+                    ConfigSpec::read(&begun_config(&run, before))?
+                }
+                (None, _) => ConfigSpec::read(Path::new(config::DEFAULT))?,
             };
             config.seed = seed.unwrap_or(config.seed);
             Training::start(&request, config)?
@@ -92,19 +97,23 @@ fn train(mut arguments: Arguments) -> Result<String> {
     Ok(report)
 }
 
+/// The configuration that a run keeps of a stage; the stage after it goes on with that.
+fn begun_config(run: &str, stage: Stage) -> PathBuf {
+    run_folder(run, stage).join("config.ron")
+}
+
 fn eval(mut arguments: Arguments) -> Result<String> {
-    let run = run_name(Some(arguments.required("run")?))?;
     let stage: Stage = arguments.required("stage")?;
+    let place = policy(&mut arguments, stage)?;
     let episodes = arguments.optional("episodes")?.unwrap_or(DEFAULT_EPISODES);
     let seed: Option<u64> = arguments.optional("seed")?;
     let json: Option<PathBuf> = arguments.optional("json")?;
     arguments.finish()?;
     ensure!(episodes > 0, "--episodes must be at least 1");
-    let (header, agent) = checkpoint::read(&best(&run, stage)?)?;
-    let machine = Arc::new(Machine::load(&header.config)?);
-    let seed = seed.unwrap_or(header.config.seed);
+    let trained = place.read()?;
+    let seed = seed.unwrap_or(trained.config.seed);
     let plan = Plan { stage, episodes, seed, purpose: Purpose::Evaluation };
-    let evaluation = evaluation::evaluate(agent.policy(), &header.scaling, &machine, plan)?;
+    let evaluation = evaluation::evaluate(&trained.policy, &trained.scaling, &trained.machine()?, plan)?;
     let result = serde_json::to_string_pretty(&evaluation.summary)? + "\n";
     if let Some(path) = json {
         store::write_whole(&path, result.as_bytes())?;
@@ -112,19 +121,34 @@ fn eval(mut arguments: Arguments) -> Result<String> {
     Ok(result)
 }
 
+fn play(mut arguments: Arguments) -> Result<String> {
+    let stage: Option<Stage> = arguments.optional("stage")?;
+    let place = policy(&mut arguments, stage.unwrap_or(Stage::Purple))?;
+    let episode = arguments.optional("episode")?.unwrap_or(0);
+    let seed: Option<u64> = arguments.optional("seed")?;
+    let json: Option<PathBuf> = arguments.optional("json")?;
+    arguments.finish()?;
+    let trained = place.read()?;
+    let take = take(&trained, stage, seed, episode);
+    let played = play::play(&trained, take)?;
+    if let Some(path) = json {
+        store::write_whole(&path, (serde_json::to_string_pretty(&played)? + "\n").as_bytes())?;
+    }
+    Ok(played.to_string())
+}
+
 fn record(mut arguments: Arguments) -> Result<String> {
-    let run = run_name(Some(arguments.required("run")?))?;
-    let stage: Stage = arguments.required("stage")?;
-    let region: Stage = arguments.optional("region")?.unwrap_or(stage);
+    let stage: Option<Stage> = arguments.optional("stage")?;
+    let place = policy(&mut arguments, stage.unwrap_or(Stage::Purple))?;
+    let region: Option<Stage> = arguments.optional("region")?;
     let episode = arguments.required("episode")?;
     let seed: Option<u64> = arguments.optional("seed")?;
     let out: PathBuf = arguments.required("out")?;
     arguments.finish()?;
-    let (header, agent) = checkpoint::read(&best(&run, stage)?)?;
-    let machine = Arc::new(Machine::load(&header.config)?);
-    let take = Take { stage: region, seed: seed.unwrap_or(header.config.seed), episode };
-    let origin = format!("best policy of stage {stage}, trained with seed {}", header.config.seed);
-    actions::record(agent.policy(), &header.scaling, &machine, take, &origin, &out)
+    let trained = place.read()?;
+    let take = take(&trained, region.or(stage), seed, episode);
+    let origin = format!("best policy of stage {}, trained with seed {}", trained.stage, trained.config.seed);
+    actions::record(&trained.policy, &trained.scaling, &trained.machine()?, take, &origin, &out)
 }
 
 fn search(mut arguments: Arguments) -> Result<String> {
@@ -143,15 +167,20 @@ fn search(mut arguments: Arguments) -> Result<String> {
     Ok(table)
 }
 
-/// The best checkpoint of a run's stage.
-fn best(run: &str, stage: Stage) -> Result<PathBuf> {
-    let path = training::best(&run_folder(run, stage));
-    ensure!(
-        path.exists(),
-        "run '{run}' has no trained stage {stage}: {} is missing; first run: cargo xtask train --stage {stage} --run {run}",
-        path.display()
-    );
-    Ok(path)
+/// Which episode is meant, by the policy's own stage and seed where none are given.
+fn take(trained: &Trained, stage: Option<Stage>, seed: Option<u64>, episode: u64) -> Take {
+    Take { stage: stage.unwrap_or(trained.stage), seed: seed.unwrap_or(trained.config.seed), episode }
+}
+
+/// The policy that `--policy` names, or that of `stage` of the run that `--run` names.
+fn policy(arguments: &mut Arguments, stage: Stage) -> Result<Place> {
+    let named: Option<String> = arguments.optional("policy")?;
+    let run: Option<String> = arguments.optional("run")?;
+    match (named, run) {
+        (Some(named), None) => Ok(Place::Named(named)),
+        (None, Some(run)) => Ok(Place::Run(run_name(Some(run))?, stage)),
+        _ => bail!("give either --run NAME or --policy NAME|FILE"),
+    }
 }
 
 #[cfg(feature = "figures")]
@@ -221,7 +250,7 @@ fn report(arguments: Arguments) -> Result<String> {
 fn source(arguments: &mut Arguments) -> Result<gallery::Source> {
     let runs: Vec<String> = arguments.all("run")?;
     let runs = runs.into_iter().map(|run| run_name(Some(run))).collect::<Result<Vec<_>>>()?;
-    let policy: Option<PathBuf> = arguments.optional("policy")?;
+    let policy = arguments.optional("policy")?;
     let (stage, episodes) = (arguments.optional("stage")?, arguments.optional("episodes")?);
     Ok(gallery::Source { runs, stage, policy, episodes: episodes.unwrap_or(DRAWN_EPISODES) })
 }

@@ -10,7 +10,8 @@ use serde::Serialize;
 use crate::store::AppendFile;
 use crate::tensorboard::EventFile;
 
-const METRICS: &str = "metrics.jsonl";
+/// Name of the file of metrics.
+pub(super) const METRICS: &str = "metrics.jsonl";
 const EVENTS: &str = "events.out.tfevents";
 
 /// One line of `metrics.jsonl`. Nothing in it depends on the clock: one seed, one file.

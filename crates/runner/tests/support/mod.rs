@@ -2,6 +2,9 @@
 #![expect(clippy::unwrap_used, reason = "helpers of tests are tests too")]
 #![allow(dead_code, unreachable_pub, reason = "every test file takes what it needs")]
 
+#[cfg(feature = "training")]
+pub mod learning;
+
 use std::fs;
 use std::path::{Path, PathBuf};
 use std::process::{Command, Output};
