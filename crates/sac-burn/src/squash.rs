@@ -132,6 +132,28 @@ mod tests {
     }
 
     #[test]
+    fn log_probability_agrees_with_the_closed_form_in_double_precision() {
+        // ln N(u; μ, σ) − ln(1 − tanh²u), the correction as −2 ln cosh u, also where 1 − tanh²u is 0 in f32.
+        for (mean, log_std, epsilon) in [
+            (0.0f32, 0.0f32, 0.0f32),
+            (0.7, -1.5, 1.2),
+            (-2.0, 0.5, -2.5),
+            (12.0, -3.0, 0.4),
+            (-9.0, 1.5, -1.0),
+        ] {
+            let found = f64::from(sample(&[mean, log_std], &[epsilon], 1, BOUNDS).log_probabilities[0]);
+            let [mean, log_std, epsilon] = [mean, log_std, epsilon].map(f64::from);
+            let u = mean + log_std.exp() * epsilon;
+            let normal = -0.5 * epsilon * epsilon - log_std - 0.5 * std::f64::consts::TAU.ln();
+            let expected = normal + 2.0 * u.cosh().ln();
+            assert!(
+                (found - expected).abs() < 2e-6 * (1.0 + expected.abs()),
+                "u = {u}: {found} against {expected}"
+            );
+        }
+    }
+
+    #[test]
     fn probabilities_of_independent_dimensions_multiply() {
         let both = sample(&[0.3, -0.4, -1.0, 0.2], &[0.5, -0.8], 2, BOUNDS).log_probabilities[0];
         let first = sample(&[0.3, -1.0], &[0.5], 1, BOUNDS).log_probabilities[0];
