@@ -1,9 +1,9 @@
 //! Training of one stage, from its start or from a checkpoint, until it is mastered.
 
+mod finished;
 mod overlap;
 mod record;
 
-use std::fmt;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 use std::time::Instant;
@@ -11,6 +11,7 @@ use std::time::Instant;
 use anyhow::{Context, Result, ensure};
 use sac_burn::{Agent, Policy};
 
+pub use self::finished::Finished;
 use self::overlap::Played;
 use self::record::{EpisodeRecord, Means, Recorder};
 use crate::certificate::{Certificate, Part};
@@ -44,57 +45,6 @@ pub struct Request {
     pub display: Display,
     /// When to stop before the end.
     pub stop: Stop,
-}
-
-/// How a training ended.
-#[derive(Debug)]
-pub struct Finished {
-    /// The evaluation that closed the stage, of the best checkpoint.
-    pub evaluation: Evaluation,
-    /// Training episodes.
-    pub episodes: u64,
-    /// Training steps.
-    pub steps: u64,
-    /// True if a confirmation passed.
-    pub mastered: bool,
-    /// Limits that did not hold, in training and evaluation together.
-    pub violations: Violations,
-    /// The stage.
-    pub stage: Stage,
-    /// Share of successes over the last episodes of the training.
-    pub window_success_rate: f64,
-    /// Digest of `metrics.jsonl`: equal for equal trainings.
-    pub digest: Digest,
-    /// Folder of the results.
-    pub folder: PathBuf,
-}
-
-impl fmt::Display for Finished {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let Self { stage, episodes, steps, evaluation, .. } = self;
-        let summary = &evaluation.summary;
-        let word = if self.mastered { "mastered" } else { "not mastered" };
-        writeln!(f, "{stage}: {word} after {episodes} episodes, {steps} steps")?;
-        writeln!(f, "  last episodes of training  {:.1} % reached", 100.0 * self.window_success_rate)?;
-        let [low, high] = summary.success_ci95.map(|bound| 100.0 * bound);
-        writeln!(
-            f,
-            "  {} fresh episodes         {:.1} % reached (95 % interval {low:.1} to {high:.1} %)",
-            summary.episodes,
-            100.0 * summary.success_rate
-        )?;
-        let Violations { reference, actual } = self.violations;
-        writeln!(
-            f,
-            "  limits                     {reference} violations of the reference, {actual} of the actual motion"
-        )?;
-        writeln!(f, "  metrics digest             {}", self.digest)?;
-        writeln!(
-            f,
-            "  in {}: {stage}.policy, eval.json, certificate.json, metrics.jsonl, timing.json, checkpoints",
-            self.folder.display()
-        )
-    }
 }
 
 /// A training in progress.
