@@ -159,6 +159,17 @@ impl Values {
         }
     }
 
+    /// Of a flag that may be given several times: each one of the names listed.
+    pub(crate) fn all_of(&self, flag: &str, names: &[&'static str]) -> Result<Vec<&'static str>, UsageError> {
+        let given =
+            self.given.iter().filter(|(name, _)| *name == flag).filter_map(|(_, text)| text.as_deref());
+        let known = |text: &str| {
+            let found = names.iter().find(|name| **name == text).copied();
+            found.ok_or_else(|| self.error(&unknown(flag, text, names)))
+        };
+        given.map(known).collect()
+    }
+
     /// A joint of the crane; `lift` stands for `lift_joint`. The flag is required. If `config` is given, the crane may
     /// be any, and its own file says whether it has such a joint.
     pub(crate) fn joint(&self, flag: &str, config: &str) -> Result<String, UsageError> {

@@ -18,11 +18,13 @@ impl Figures {
 
     fn call_of(&self, command: &str) -> Call {
         let runs = self.runs.iter().map(String::as_str);
-        runs.fold(Call::new(Binary::Runner, command), |call, run| call.value("run", run))
+        let call = runs
+            .fold(Call::new(Binary::Runner, command), |call, run| call.value("run", run))
             .option("policy", self.policy.as_deref())
             .option("stage", self.stage)
             .option("episodes", self.episodes.map(|episodes| episodes.to_string()))
-            .option("out", self.out.as_deref())
+            .option("out", self.out.as_deref());
+        self.only.iter().fold(call, |call, &name| call.value("figure", name))
     }
 
     pub(crate) fn run(self) -> anyhow::Result<ExitCode> {

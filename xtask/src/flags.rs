@@ -43,6 +43,22 @@ pub(crate) const FEEDFORWARDS: &[&str] = &["none", "nominal", "exact"];
 /// Plants that gains are tuned for.
 pub(crate) const PLANTS: &[&str] = &["electric", "light"];
 
+/// Figures of a policy, and of the learning of each stage.
+pub(crate) const FIGURES: &[&str] = &[
+    "architecture",
+    "workspace",
+    "posture",
+    "safe-zone",
+    "velocity-profile",
+    "motion",
+    "tracking",
+    "tracking-error",
+    "margins",
+    "learning-purple",
+    "learning-yellow",
+    "learning-orange",
+];
+
 /// A command line that has been understood. Paths are absolute.
 #[derive(Debug)]
 pub(crate) enum Invocation {
@@ -128,6 +144,8 @@ pub(crate) struct Figures {
     pub(crate) stage: Option<&'static str>,
     pub(crate) episodes: Option<u64>,
     pub(crate) out: Option<PathBuf>,
+    /// Figures to draw; all if there is none.
+    pub(crate) only: Vec<&'static str>,
 }
 
 #[derive(Debug, PartialEq)]
@@ -381,6 +399,7 @@ fn figures(parsed: &Values) -> Result<Figures, UsageError> {
         stage: parsed.one_of("stage", STAGES)?,
         episodes: parsed.integer("episodes", 1)?,
         out: parsed.file("out")?,
+        only: parsed.all_of("figure", FIGURES)?,
     })
 }
 

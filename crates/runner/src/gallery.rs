@@ -13,8 +13,8 @@ use crate::machine::Machine;
 use crate::pictures::{self, Curve, Looks, Shown};
 use crate::recording::{self, Detail, Recording};
 use crate::stage::Stage;
-use crate::store;
 use crate::trained::{Place, Trained};
+use crate::{store, suggest};
 
 /// Pixels of a PNG for each of a figure.
 const PNG_SCALE: f64 = 2.0;
@@ -33,6 +33,8 @@ pub struct Source {
     pub policy: Option<String>,
     /// Episodes that are played.
     pub episodes: u64,
+    /// Names of the figures that are wanted; all if there is none.
+    pub only: Vec<String>,
 }
 
 /// A figure and its name, which is its file's without the ending.
@@ -51,7 +53,22 @@ pub fn draw(source: &Source) -> Result<Vec<Named>> {
             figures.push((format!("learning-{stage}"), pictures::learning(stage.name(), &curves)?));
         }
     }
-    Ok(figures)
+    wanted(figures, &source.only)
+}
+
+/// The figures of these names, or all.
+fn wanted(figures: Vec<Named>, only: &[String]) -> Result<Vec<Named>> {
+    let known: Vec<&str> = figures.iter().map(|(name, _)| name.as_str()).collect();
+    for name in only {
+        let hint = suggest::nearest(name, &known).map(|near| format!("; did you mean '{near}'?"));
+        ensure!(
+            known.contains(&name.as_str()),
+            "no figure is called '{name}' here{} (there are {})",
+            hint.unwrap_or_default(),
+            known.join(", ")
+        );
+    }
+    Ok(figures.into_iter().filter(|(name, _)| only.is_empty() || only.contains(name)).collect())
 }
 
 /// Writes every figure as SVG, which follows the reader's light or dark, and as PNG for either.

@@ -141,9 +141,14 @@ impl Progress {
             Some(rate) if rate.episodes > 0.0 => {
                 format!("at most {} left", duration(episodes_left / rate.episodes))
             }
-            _ => "time left unknown".to_owned(),
+            _ => "time left not known yet".to_owned(),
         };
         [task, learner, speed + &margin, left]
+    }
+
+    /// The time until now was not spent on training: speeds are taken anew from here on.
+    pub fn forget_speed(&mut self) {
+        self.speed = Speedometer::new();
     }
 
     /// Says one thing that stays on the screen.

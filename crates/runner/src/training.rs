@@ -195,6 +195,7 @@ impl Training {
             }
             if let Some(rate) = self.episode()? {
                 progress.say(&self.confirmation(rate));
+                progress.forget_speed();
             }
             progress.update(&self.status());
             if self.steps >= checkpoint_at {

@@ -118,6 +118,10 @@ fn the_same_run_gives_the_same_figures() {
     for out in ["one", "two"] {
         check_success(&runner(&project, &format!("figures --run a --episodes 3 --out {out}")));
     }
+    check_success(&runner(&project, "figures --run a --episodes 3 --figure margins --out three"));
+    let files = std::fs::read_dir(project.path("three")).unwrap().count();
+    assert_eq!(files, 3, "one figure as .svg, .png and -dark.png");
+    assert!(project.bytes("one/margins.svg") == project.bytes("three/margins.svg"));
     for name in FIGURES {
         let file = |out: &str| project.bytes(&format!("{out}/{name}.svg"));
         assert!(file("one") == file("two"), "{name}");
@@ -134,6 +138,10 @@ fn what_cannot_be_shown_is_refused() {
         &["stage orange", "cargo xtask train"],
     );
     check_refusal(&runner(&project, "figures --run a --episodes 0"), &["--episodes"]);
+    check_refusal(
+        &runner(&project, "figures --run a --episodes 1 --figure postur"),
+        &["'postur'", "did you mean 'posture'", "workspace, posture"],
+    );
     check_refusal(&runner(&project, "report --run c"), &["eval.json", "cargo xtask train"]);
     project.write("broken", "no checkpoint at all, but long enough to hold a header");
     check_refusal(&runner(&project, "figures --policy broken"), &["broken", "no checkpoint of a run"]);

@@ -110,8 +110,9 @@ pub(crate) const COMMANDS: &[Command] = &[
             optional("stage", "STAGE", "stage whose policy is shown, instead of the last one trained"),
             optional("episodes", "N", "episodes to play (default 60)"),
             optional("out", "DIR", "folder for the pictures, instead of runs/NAME/figures"),
+            repeated("figure", "NAME", "figure to draw, instead of all"),
         ],
-        example: "cargo xtask figures --run first --out docs/figures",
+        example: "cargo xtask figures --run first --figure workspace --out docs/figures",
     },
     Command {
         name: "report",

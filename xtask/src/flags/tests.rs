@@ -70,6 +70,10 @@ fn flags_reach_the_child_in_one_form() {
             format!("{RUNNER} figures --run b --run a --stage purple --episodes 9"),
         ),
         ("runs --json", format!("{KINEMATICS} runs --json")),
+        (
+            "figures --run a --figure safe-zone --figure=posture",
+            format!("{RUNNER} figures --run a --figure safe-zone --figure posture"),
+        ),
         ("report --open --run a", format!("{RUNNER} report --run a --open")),
         (
             "profile --v1=-0.1 --v2 -1e-2 --dt .05 --vmax 0.15 --amax 1 --jmax 1e2 --timing fastest --hz 500",
@@ -139,6 +143,7 @@ fn unknown_names_get_a_suggestion() {
     assert!(refusal("help tidi").contains("did you mean `tidy`?"));
     let text = refusal("train --al");
     assert!(text.contains("did you mean `--all`?") && text.contains("--stage, --all, --run"), "{text}");
+    assert!(refusal("figures --run a --figure workspce").contains("did you mean `workspace`?"));
     assert!(refusal("tidy --fix").contains("takes none"));
     let text = refusal("zone --joint telescop_joint --position 0 --velocity 0");
     assert!(text.contains("did you mean `telescope_joint`?") && text.contains("wrist_roll_joint"), "{text}");

@@ -252,7 +252,8 @@ fn source(arguments: &mut Arguments) -> Result<gallery::Source> {
     let runs = runs.into_iter().map(|run| run_name(Some(run))).collect::<Result<Vec<_>>>()?;
     let policy = arguments.optional("policy")?;
     let (stage, episodes) = (arguments.optional("stage")?, arguments.optional("episodes")?);
-    Ok(gallery::Source { runs, stage, policy, episodes: episodes.unwrap_or(DRAWN_EPISODES) })
+    let only = arguments.all("figure")?;
+    Ok(gallery::Source { runs, stage, policy, episodes: episodes.unwrap_or(DRAWN_EPISODES), only })
 }
 
 /// A name that is one folder under `runs/`.
