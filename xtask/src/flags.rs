@@ -297,8 +297,8 @@ impl Invocation {
             }
             "report" => {
                 let report = Report { figures: figures(&parsed)?, open: parsed.switch("open") };
-                if report.figures.runs.is_empty() {
-                    return Err(parsed.error("needs --run NAME"));
+                if report.figures.runs.is_empty() && report.figures.policy.is_none() {
+                    return Err(parsed.error("needs --run NAME or --policy NAME"));
                 }
                 Self::Report(report)
             }

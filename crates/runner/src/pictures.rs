@@ -75,6 +75,12 @@ impl Shown<'_> {
 /// Takes a number out of something that has several.
 type Quantity<T> = fn(&T) -> f64;
 
+/// With a capital letter.
+pub(crate) fn capitalised(name: &str) -> String {
+    let mut letters = name.chars();
+    letters.next().map(|first| first.to_uppercase().chain(letters).collect()).unwrap_or_default()
+}
+
 /// The axis of a time.
 fn time_axis() -> Axis {
     Axis::new("Time", "s")

@@ -11,14 +11,19 @@ use figures::SvgTheme;
 use self::page::{Page, escape, grouped};
 use self::results::StageResult;
 use crate::gallery::{self, Source};
+use crate::pictures::capitalised;
 use crate::stage::Stage;
+use crate::trained::Place;
 
 /// Writes the page.
 ///
 /// # Errors
 /// A run was not trained, or a file of it is missing or damaged.
 pub fn html(source: &Source) -> Result<String> {
-    let results = results::read(&source.runs)?;
+    let mut results = results::read(&source.runs)?;
+    if let Some(policy) = &source.policy {
+        results.push(results::of_policy(policy, &Place::Named(policy.clone()).read()?)?);
+    }
     ensure!(
         !results.is_empty(),
         "no stage of {} is finished: its eval.json is missing; first run: cargo xtask train --all --run {}",
@@ -26,7 +31,7 @@ pub fn html(source: &Source) -> Result<String> {
         source.runs.first().map_or("NAME", String::as_str)
     );
     let figures = gallery::draw(source)?;
-    let mut page = Page::new(&title(&source.runs));
+    let mut page = Page::new(&title(&source.runs, &results));
     verdict(&mut page, &results);
     page.section("Results");
     results::table(&mut page, &results);
@@ -43,8 +48,9 @@ pub fn html(source: &Source) -> Result<String> {
     Ok(page.finish())
 }
 
-fn title(runs: &[String]) -> String {
+fn title(runs: &[String], results: &[StageResult]) -> String {
     match runs {
+        [] => results.first().map_or_else(String::new, |result| capitalised(&result.name)),
         [only] => format!("Run {only}"),
         several => format!("Runs {}", several.join(", ")),
     }
@@ -113,7 +119,9 @@ fn configurations(page: &mut Page, results: &[StageResult]) {
 fn commands(page: &mut Page, source: &Source, results: &[StageResult]) {
     let [trainings, evaluations] = [0, 1].map(|which| results.iter().map(move |result| &result.again[which]));
     let mut lines: Vec<String> = trainings.chain(evaluations).cloned().collect();
-    let runs: Vec<String> = source.runs.iter().map(|run| format!("--run {run}")).collect();
+    let runs = source.runs.iter().map(|run| format!("--run {run}"));
+    let runs: Vec<String> =
+        runs.chain(source.policy.iter().map(|policy| format!("--policy {policy}"))).collect();
     lines.push(format!("cargo xtask figures {}", runs.join(" ")));
     lines.push(format!("cargo xtask report {}", runs.join(" ")));
     page.html(&format!("<pre>{}</pre>\n", escape(&lines.join("\n"))));

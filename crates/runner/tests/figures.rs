@@ -113,6 +113,22 @@ fn a_run_has_every_figure_and_a_page_that_needs_nothing_else() {
 }
 
 #[test]
+fn a_policy_s_file_alone_has_a_page_with_its_results_and_certificate() {
+    let project = trained_project();
+    let policy = "runs/b/purple/purple.policy";
+    check_success(&runner(&project, &format!("report --policy {policy} --episodes 2 --out shown.html")));
+    let page = project.text("shown.html");
+    for part in
+        ["Policy purple", "No limit was exceeded", "4 fresh episodes", "wrist pitch", "random_steps: 60"]
+    {
+        assert!(page.contains(part), "the page does not say '{part}'");
+    }
+    assert!(page.contains(&format!("cargo xtask eval --policy {policy} --stage purple --episodes 4")));
+    let refused = runner(&project, "report --policy runs/b/purple/checkpoints/best --episodes 2");
+    check_refusal(&refused, &["is a checkpoint", "--run NAME"]);
+}
+
+#[test]
 fn the_same_run_gives_the_same_figures() {
     let project = trained_project();
     for out in ["one", "two"] {

@@ -75,6 +75,7 @@ fn flags_reach_the_child_in_one_form() {
             format!("{RUNNER} figures --run a --figure safe-zone --figure posture"),
         ),
         ("report --open --run a", format!("{RUNNER} report --run a --open")),
+        ("report --policy orange", format!("{RUNNER} report --policy orange")),
         (
             "profile --v1=-0.1 --v2 -1e-2 --dt .05 --vmax 0.15 --amax 1 --jmax 1e2 --timing fastest --hz 500",
             format!(

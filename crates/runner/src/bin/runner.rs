@@ -204,7 +204,7 @@ fn report(mut arguments: Arguments) -> Result<String> {
     let source = source(&mut arguments)?;
     let path = place(&mut arguments, &source, "report.html")?;
     arguments.finish()?;
-    ensure!(!source.runs.is_empty(), "--run is missing");
+    ensure!(!source.runs.is_empty() || source.policy.is_some(), "give --run NAME or --policy NAME");
     let html = report::html(&source)?;
     store::write_whole(&path, html.as_bytes())?;
     let opened = if open { self::open(&path) } else { String::new() };

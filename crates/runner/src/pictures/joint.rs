@@ -7,7 +7,9 @@ use figures::{
 use jbtg::{Interval, State};
 use safezone::SafeZone;
 
-use super::{Quantity, Shown, actual_style, line, points, reference_style, time_axis, way_style};
+use super::{
+    Quantity, Shown, actual_style, capitalised, line, points, reference_style, time_axis, way_style,
+};
 use crate::recording::RecordedTick;
 
 /// Points along each curved edge of a zone.
@@ -215,9 +217,4 @@ fn course(name: &str, style: Style, shown: &Shown<'_>, of: impl Fn(&RecordedTick
 fn time_of(shown: &Shown<'_>) -> Axis {
     let end = shown.recording.steps.len() as f64 * shown.machine.rates().policy_period();
     time_axis().from_to(0.0, end)
-}
-
-fn capitalised(name: &str) -> String {
-    let mut letters = name.chars();
-    letters.next().map(|first| first.to_uppercase().chain(letters).collect()).unwrap_or_default()
 }

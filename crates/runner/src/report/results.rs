@@ -1,5 +1,7 @@
 //! What runs left on disk, as tables.
 
+use std::path::Path;
+
 use anyhow::{Context, Result};
 use serde_json::Value;
 
@@ -8,6 +10,7 @@ use crate::config::run_folder;
 use crate::evaluation::Summary;
 use crate::machine::short;
 use crate::stage::Stage;
+use crate::trained::Trained;
 use crate::{statistics, store};
 
 /// The quantities of a certificate's margins, in the order of its tables.
@@ -70,6 +73,29 @@ pub(super) fn read(runs: &[String]) -> Result<Vec<StageResult>> {
         }
     }
     Ok(results)
+}
+
+/// What the file of a policy says of the training that it is from.
+///
+/// # Errors
+/// The file is that of a checkpoint, whose stage is not closed.
+pub(super) fn of_policy(policy: &str, trained: &Trained) -> Result<StageResult> {
+    let header = trained.header.as_ref().with_context(|| {
+        format!("{policy} is a checkpoint, which holds no evaluation; give the policy's file or --run NAME")
+    })?;
+    let stem = Path::new(policy).file_stem().and_then(|stem| stem.to_str()).unwrap_or(policy);
+    let (stage, episodes) = (header.stage, header.evaluation.episodes);
+    Ok(StageResult {
+        name: format!("policy {stem}"),
+        stage,
+        summary: header.evaluation.clone(),
+        certificate: serde_json::to_value(&header.certificate)?,
+        config: header.config.to_ron()?,
+        again: [
+            "cargo xtask train --all --run again --config config.ron  # the configuration above".to_owned(),
+            format!("cargo xtask eval --policy {policy} --stage {stage} --episodes {episodes}"),
+        ],
+    })
 }
 
 /// The commands that train a stage of a run again, under another name, and evaluate the run's own policy.
