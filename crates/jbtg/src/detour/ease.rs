@@ -17,8 +17,12 @@ use crate::math::sqrt;
 /// Most evaluations for a root.
 const ROUNDS: u32 = 48;
 
-/// Width of a bracket that is narrow enough, as a share of its upper end.
-const NARROW: f64 = 1e-12;
+/// Width of a bracket of v_peak that is narrow enough, as a share of the first one.
+const NARROW_PEAK: f64 = 1e-7;
+
+/// The same for what time is worth: while v_peak is sought, and for the choice, where time that is left over counts.
+const NARROW_TRIAL: f64 = 1e-9;
+const NARROW_CHOICE: f64 = 1e-13;
 
 /// A pulse to or from the peak velocity whose peak acceleration is to be chosen.
 #[derive(Clone, Copy)]
@@ -53,23 +57,24 @@ impl Side {
             return None;
         }
         let top = self.peak(ends, highest, period)?;
-        let at = |peak: f64| {
+        let at = |peak: f64, narrow: f64| {
             let (rise, fall) =
                 (Part { change: peak - ends.0, ..rise }, Part { change: peak - ends.1, ..fall });
-            choice([rise, fall], period)
+            choice([rise, fall], period, narrow)
         };
-        let peak = falling_root(|peak| at(peak).slope, ends.0.max(ends.1), top);
-        let [rise, fall] = at(peak).shares;
+        let slope = |peak: f64| at(peak, NARROW_TRIAL).slope;
+        let peak = falling_root(slope, ends.0.max(ends.1), top, NARROW_PEAK);
+        let [rise, fall] = at(peak, NARROW_CHOICE).shares;
         Some(Self { rise: self.rise.eased(rise), fall: self.fall.eased(fall) })
     }
 }
 
 /// The shares of the largest displacement for given changes. What time is worth is `worth`/(1 − `worth`) of the larger
 /// change.
-fn choice(parts: [Part; 2], period: f64) -> Choice {
+fn choice(parts: [Part; 2], period: f64, narrow: f64) -> Choice {
     let unit = parts[0].change.max(parts[1].change);
     let excess = |worth: f64| parts.iter().map(|part| part.time(worth, unit)).sum::<f64>() - period;
-    let worth = falling_root(excess, 0.0, 1.0);
+    let worth = falling_root(excess, 0.0, 1.0, narrow);
     let accelerations = parts.map(|part| part.acceleration(worth, unit));
     let held = |(part, a): (&Part, f64)| 0.5 * part.inner * a;
     let mut slope = parts.iter().zip(accelerations).map(held).sum::<f64>() - excess(worth).min(0.0);
@@ -119,7 +124,8 @@ impl Part {
 
 /// Where a function that falls from `low` to `high` becomes negative: the upper end of a narrow bracket, or the end of
 /// the interval that is nearest. Regula falsi with halved weights, every third step a halving.
-fn falling_root(f: impl Fn(f64) -> f64, mut low: f64, mut high: f64) -> f64 {
+fn falling_root(f: impl Fn(f64) -> f64, mut low: f64, mut high: f64, narrow: f64) -> f64 {
+    let narrow = narrow * (high - low);
     let (mut above, mut below) = (f(low), f(high));
     if !(above > 0.0) {
         return low;
@@ -128,7 +134,7 @@ fn falling_root(f: impl Fn(f64) -> f64, mut low: f64, mut high: f64) -> f64 {
         return high;
     }
     for round in 0..ROUNDS {
-        if high - low <= NARROW * high.abs() {
+        if high - low <= narrow {
             break;
         }
         let secant = low + (high - low) * (above / (above - below));
