@@ -8,7 +8,7 @@
 //! use peers::{TELESCOPE, zone};
 //!
 //! let ours = zone(TELESCOPE, Timing::Stretched, 0.05);
-//! let range = ours.range(0.49, 0.1);
+//! let range = ours.range(0.495, 0.1);
 //! assert!(range.max < 0.1, "near its limit the joint has to brake");
 //! ```
 //!

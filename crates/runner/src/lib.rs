@@ -25,8 +25,8 @@
 //! # std::env::set_current_dir("../..")?;
 //! let machine = Machine::load(&ConfigSpec::read(Path::new(DEFAULT))?)?;
 //! let lift = machine.joints().iter().find(|joint| joint.name == "lift_joint").expect("the crane has one");
-//! let range = lift.zone.range(0.49, 0.05); // m, m/s
-//! assert!(range.min <= range.max && range.max < 0.07, "1 cm before its limit the cylinder has to brake");
+//! let range = lift.zone.range(0.495, 0.05); // m, m/s
+//! assert!(range.min <= range.max && range.max < 0.05, "5 mm before its limit the cylinder has to brake");
 //! # Ok::<(), anyhow::Error>(())
 //! ```
 //!
