@@ -6,7 +6,7 @@ use crate::law::{AdaptiveLaw, LawSpec};
 use crate::stability::{LinearLaw, check_period};
 use crate::{
     Command, EffortLimits, Gains, GainsSpec, HoldError, Input, JointController, JointSpec,
-    MAX_DAMPING_PER_TICK, Measurement, Reference, Saturation, StabilityError,
+    MAX_DAMPING_PER_TICK, MIN_DAMPING_RATIO, Measurement, Reference, Saturation, StabilityError,
 };
 
 /// Adaptive controller of one joint, [P, Eqs. (304), (305), (307), (310), (311)].
@@ -29,8 +29,8 @@ use crate::{
 /// - Effort is cut to the actuator's limits and the [`Command`] says so; while it is cut neither
 ///   parameter moves, since an error that effort cannot reduce says nothing about the gain.
 /// - φ̂₁ and φ̂₂ have ceilings (a projection), set at construction at what the sampled loop bears
-///   over the whole range of inertia: ½(k₅ + k₆φ̂₂)·A_max·T_s ≤ [`MAX_DAMPING_PER_TICK`] and
-///   ½(k₁ + k₂φ̂₁) ≤ ½k₅·A_min. [`adaptation`](Self::adaptation) says when one is reached.
+///   over the whole range of inertia: ½(k₅ + k₆φ̂₂)·A_max·T_s ≤ [`MAX_DAMPING_PER_TICK`], and a damping
+///   ratio of at least [`MIN_DAMPING_RATIO`] with ½(k₁ + k₂φ̂₁), whatever φ̂₂ is. [`adaptation`](Self::adaptation) says when one is reached.
 /// - The reference may bring an effort that a model expects; it is added to u. Without it, or where the
 ///   model is wrong, a joint under constant load keeps an error of load / stiffness,
 ///   stiffness 1 + ¼(k₁ + k₂φ̂₁)(k₅ + k₆φ̂₂). [`start_holding`](JointController::start_holding) starts
@@ -77,9 +77,10 @@ impl AdaptiveController {
     /// [`StabilityError`] if the sampled loop could not be stable with a margin over the whole
     /// range of inertia:
     /// - `DampingTooStrong` unless ½k₅·A_max·T_s ≤ [`MAX_DAMPING_PER_TICK`];
-    /// - `VirtualControlTooFast` unless ½k₁ ≤ ½k₅·A_min, which is a damping ratio of at least ½;
     /// - `Unstable` unless every eigenvalue of the sampled loop is inside the unit circle at A_min
-    ///   and A_max (a joint heavier than A_min stays stable and is less damped);
+    ///   and A_max;
+    /// - `Underdamped` unless its damping ratio is at least [`MIN_DAMPING_RATIO`] there,
+    ///   nearly ½k₁ ≤ ½k₅·A_min (a joint heavier than A_min stays stable and is less damped);
     /// - `Limits` unless the period is finite and > 0.
     pub fn new(gains: Gains, joint: JointSpec) -> Result<Self, StabilityError> {
         let JointSpec { period, inverse_inertia, effort_limits } = joint;
@@ -87,18 +88,9 @@ impl AdaptiveController {
         let gains = gains.values();
         Self::linear(&gains, Parameters { position: 0.0, velocity: 0.0 }).check(&joint)?;
 
-        let virtual_rate = 0.5 * gains.k1;
-        let velocity_rate = 0.5 * gains.k5 * inverse_inertia.min();
-        if virtual_rate > velocity_rate {
-            return Err(StabilityError::VirtualControlTooFast {
-                virtual_rate,
-                velocity_rate,
-                inverse_inertia: inverse_inertia.min(),
-            });
-        }
         let largest_damping = MAX_DAMPING_PER_TICK / (inverse_inertia.max() * period);
         let ceilings = Parameters {
-            position: ceiling(2.0 * velocity_rate, gains.k1, gains.k2),
+            position: ceiling(2.0 * largest_rate(0.5 * gains.k5, &joint), gains.k1, gains.k2),
             velocity: ceiling(2.0 * largest_damping, gains.k5, gains.k6),
         };
         Ok(Self {
@@ -206,6 +198,29 @@ impl JointController for AdaptiveController {
     /// joint is held, so the held joint is an equilibrium and not only for the first tick.
     fn start_holding(&mut self, measurement: Measurement, effort: f64) -> Result<Reference, HoldError> {
         self.rest_at(measurement, effort)
+    }
+}
+
+/// Largest rate of the virtual control with which the sampled loop keeps [`MIN_DAMPING_RATIO`] where the joint is
+/// heaviest [1/s]. More damping than `damping` or less inertia only help.
+fn largest_rate(damping: f64, joint: &JointSpec) -> f64 {
+    let inverse = joint.inverse_inertia.min();
+    let ratio = |rate: f64| {
+        let law = LinearLaw { stiffness: 1.0 + damping * rate, damping, integral: 0.0 };
+        law.sampled(inverse, joint.period).damping_ratio()
+    };
+    // Without sampling, and without the 1, it would be the upper end.
+    let (mut low, mut high) = (0.0, damping * inverse);
+    loop {
+        let middle = 0.5 * (low + high);
+        if middle <= low || middle >= high {
+            return low;
+        }
+        if ratio(middle) >= MIN_DAMPING_RATIO {
+            low = middle;
+        } else {
+            high = middle;
+        }
     }
 }
 

@@ -76,7 +76,7 @@ mod tests {
             effort_limits: EffortLimits::symmetric(10.0).unwrap(),
         };
         let pd = PdGains::try_from(PdGainsSpec { proportional: 40.0, derivative: 8.0 }).unwrap();
-        let pid = PidGainsSpec { proportional: 20.0, integral: 10.0, derivative: 4.0 };
+        let pid = PidGainsSpec { proportional: 20.0, integral: 10.0, derivative: 6.0 };
         let pid = PidGains::try_from(pid).unwrap();
         Joints::new([
             PdController::new(pd, joint).unwrap().into(),

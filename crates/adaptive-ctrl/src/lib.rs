@@ -85,6 +85,6 @@ pub use joints::{JointHoldError, Joints};
 pub use limits::{Bounds, EffortLimits, InverseInertia, JointSpec, LimitsError};
 pub use pd::{PdController, PdGains, PdGainsSpec};
 pub use pid::{PidController, PidGains, PidGainsSpec};
-pub use stability::{DiscreteLoop, MAX_DAMPING_PER_TICK, StabilityError};
+pub use stability::{DiscreteLoop, MAX_DAMPING_PER_TICK, MIN_DAMPING_RATIO, StabilityError};
 #[cfg(all(feature = "std", feature = "serde"))]
 pub use table::{GAIN_TABLE_SCHEMA, GainTable, GainTableError, GainTableSpec};

@@ -90,12 +90,12 @@ impl InverseInertia {
         Self::try_from(Bounds { lower: 1.0 / inertia.upper, upper: 1.0 / inertia.lower })
     }
 
-    /// A where the joint moves most [1/kg or 1/(kg·m²)].
+    /// A where the joint is heaviest [1/kg or 1/(kg·m²)].
     pub fn min(&self) -> f64 {
         self.min
     }
 
-    /// A where the joint moves least [1/kg or 1/(kg·m²)].
+    /// A where the joint is lightest [1/kg or 1/(kg·m²)].
     pub fn max(&self) -> f64 {
         self.max
     }

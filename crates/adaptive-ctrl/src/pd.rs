@@ -79,7 +79,8 @@ impl PdController {
     ///
     /// # Errors
     /// [`StabilityError`] unless D·A_max·T_s ≤ [`MAX_DAMPING_PER_TICK`](crate::MAX_DAMPING_PER_TICK) and
-    /// the sampled loop is stable at A_min and A_max.
+    /// the sampled loop is stable at A_min and A_max, with a damping ratio of at least
+    /// [`MIN_DAMPING_RATIO`](crate::MIN_DAMPING_RATIO).
     pub fn new(gains: PdGains, joint: JointSpec) -> Result<Self, StabilityError> {
         let PdGainsSpec { proportional, derivative } = gains.values();
         LinearLaw { stiffness: proportional, damping: derivative, integral: 0.0 }.check(&joint)?;
@@ -131,7 +132,7 @@ mod tests {
     }
 
     fn controller() -> PdController {
-        let gains = PdGains::try_from(PdGainsSpec { proportional: 40.0, derivative: 8.0 }).unwrap();
+        let gains = PdGains::try_from(PdGainsSpec { proportional: 30.0, derivative: 8.0 }).unwrap();
         PdController::new(gains, joint()).unwrap()
     }
 
@@ -139,7 +140,7 @@ mod tests {
     fn effort_is_the_weighted_errors() {
         let reference = Reference { position: 0.5, velocity: 0.1, acceleration: 9.0, effort: 0.0 };
         let command = controller().step(reference, Measurement { position: 0.6, velocity: -0.2 });
-        assert!((command.effort - (-40.0 * 0.1 - 8.0 * -0.3)).abs() < 1e-12, "{command:?}");
+        assert!((command.effort - (-30.0 * 0.1 - 8.0 * -0.3)).abs() < 1e-12, "{command:?}");
         assert_eq!(command.saturation, Saturation::None);
     }
 
@@ -186,7 +187,7 @@ mod tests {
 
     #[test]
     fn refuses_damping_that_the_period_does_not_bear() {
-        let gains = PdGains::try_from(PdGainsSpec { proportional: 40.0, derivative: 300.0 }).unwrap();
+        let gains = PdGains::try_from(PdGainsSpec { proportional: 30.0, derivative: 300.0 }).unwrap();
         assert!(matches!(PdController::new(gains, joint()), Err(StabilityError::DampingTooStrong { .. })));
         assert!(PdGains::try_from(PdGainsSpec { proportional: 0.0, derivative: 1.0 }).is_err());
     }

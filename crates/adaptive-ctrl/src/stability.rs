@@ -9,6 +9,13 @@ use crate::{JointSpec, LimitsError};
 /// ([`coupled_damping_per_tick`](crate::coupled_damping_per_tick)), friction, and a delay of one tick.
 pub const MAX_DAMPING_PER_TICK: f64 = 0.5;
 
+/// Least damping ratio that every oscillation of the sampled loop must have over the stated range of inertia.
+///
+/// With one half an error overshoots by a sixth of itself at most. Without an integral and without sampling it is
+/// P ≤ D²·A_min, for the adaptive law ½k₁ ≤ ½k₅·A_min; a period that is not short takes the share D·A·T_s/2 off that:
+/// P ≤ D²·A_min / (1 + ½D·A_min·T_s), to 2e-4.
+pub const MIN_DAMPING_RATIO: f64 = 0.5;
+
 /// One joint under a linear control law, sampled with the effort held over each period.
 ///
 /// The joint is ẍ = A·u with u = −P·e₁ − D·e₂ − I, I growing by K·e₁·T each tick. The transition over
@@ -43,6 +50,37 @@ impl DiscreteLoop {
             && (1.0 - a0 * a0).abs() > (a1 - a0 * a2).abs()
     }
 
+    /// Least damping ratio of the motions that the closed loop is made of, as they look between the ticks: 1 if none
+    /// oscillates, 0 or less if one does not decay. It is that of s = ln(z)/T for an eigenvalue z.
+    ///
+    /// For a law and a joint, with A left open, it grows with A as long as d ≤ [`MAX_DAMPING_PER_TICK`]: without an
+    /// integral it is least where the joint is heaviest. With one it is least at an end of the range.
+    pub fn damping_ratio(&self) -> f64 {
+        let (d, p, i) = (self.damping_per_tick, self.stiffness_per_tick, self.integral_per_tick);
+        // In w = z − 1 the polynomials lose no digits: w² + (d + p/2)·w + p and w³ + (d + p/2)·w² + (p + i/2)·w + i.
+        let (b, c) = (d + 0.5 * p, p + 0.5 * i);
+        if i == 0.0 {
+            return least_ratio(b, p);
+        }
+        if !self.is_stable() {
+            return 0.0;
+        }
+        // A stable loop has a real root between z = −1 and 1; the other two are those of what it leaves.
+        let (mut low, mut high) = (-2.0, 0.0);
+        loop {
+            let w = 0.5 * (low + high);
+            if w <= low || w >= high {
+                let (b, c) = (b + w, c + w * (b + w));
+                return real_ratio(w).min(least_ratio(b, c));
+            }
+            if ((w + b) * w + c) * w + i < 0.0 {
+                low = w;
+            } else {
+                high = w;
+            }
+        }
+    }
+
     /// Largest modulus of the closed-loop eigenvalues, of the loop without its integral.
     pub fn spectral_radius(&self) -> f64 {
         let (d, p) = (self.damping_per_tick, self.stiffness_per_tick);
@@ -50,6 +88,27 @@ impl DiscreteLoop {
         let product = 1.0 - d + 0.5 * p;
         let discriminant = half_sum * half_sum - product;
         if discriminant < 0.0 { libm::sqrt(product) } else { half_sum.abs() + libm::sqrt(discriminant) }
+    }
+}
+
+/// Damping ratio of the continuous motion that z = `size`·e^(±i·`angle`) samples: −Re s / |s| with s = ln z.
+fn ratio(log_size: f64, angle: f64) -> f64 {
+    -log_size / libm::hypot(log_size, angle)
+}
+
+/// The same for a real z = 1 + `w`: 1 if it decays without a change of sign.
+fn real_ratio(w: f64) -> f64 {
+    ratio(libm::log(libm::fabs(1.0 + w)), if w < -1.0 { core::f64::consts::PI } else { 0.0 })
+}
+
+/// The least of both roots z = 1 + w of w² + `b`·w + `c`.
+fn least_ratio(b: f64, c: f64) -> f64 {
+    let discriminant = 0.25 * b * b - c;
+    if discriminant >= 0.0 {
+        let root = libm::sqrt(discriminant);
+        real_ratio(-0.5 * b - root).min(real_ratio(root - 0.5 * b))
+    } else {
+        ratio(0.5 * libm::log1p(c - b), libm::atan2(libm::sqrt(-discriminant), 1.0 - 0.5 * b))
     }
 }
 
@@ -76,17 +135,17 @@ pub enum StabilityError {
         /// [`MAX_DAMPING_PER_TICK`].
         bound: f64,
     },
-    /// Position would be corrected faster than velocity can follow, where the joint is heaviest.
+    /// The loop swings too long after an error.
     #[error(
-        "virtual control rate {virtual_rate} 1/s exceeds the velocity loop's {velocity_rate} 1/s \
-         at inverse inertia {inverse_inertia}: lower k1 or raise k5"
+        "sampled loop has a damping ratio of {damping_ratio} at inverse inertia {inverse_inertia}, must be at least \
+         {bound}: lower the proportional and integral gains (k1) or raise the derivative gain (k5)"
     )]
-    VirtualControlTooFast {
-        /// ½k₁ [1/s].
-        virtual_rate: f64,
-        /// ½k₅·A [1/s].
-        velocity_rate: f64,
-        /// Smallest A of the stated range [1/kg or 1/(kg·m²)].
+    Underdamped {
+        /// [`DiscreteLoop::damping_ratio`].
+        damping_ratio: f64,
+        /// [`MIN_DAMPING_RATIO`].
+        bound: f64,
+        /// A at which it is that, an end of the stated range [1/kg or 1/(kg·m²)].
         inverse_inertia: f64,
     },
     /// The sampled loop has an eigenvalue on or outside the unit circle.
@@ -125,7 +184,7 @@ impl LinearLaw {
         }
     }
 
-    /// Refuses a law that is too strong at the lightest or unstable at either end of the range.
+    /// Refuses a law that is too strong at the lightest, or unstable or underdamped at either end of the range.
     ///
     /// Between the ends nothing new happens without an integral: p/d does not depend on A, so the
     /// stable set of A is an interval. With one, the loop loses stability towards small A (as in
@@ -152,6 +211,15 @@ impl LinearLaw {
                     damping_per_tick: sampled.damping_per_tick,
                     stiffness_per_tick: sampled.stiffness_per_tick,
                     integral_per_tick: sampled.integral_per_tick,
+                });
+            }
+            let damping_ratio = sampled.damping_ratio();
+            // Written so that NaN is refused too.
+            if !matches!(damping_ratio, ratio if ratio >= MIN_DAMPING_RATIO) {
+                return Err(StabilityError::Underdamped {
+                    damping_ratio,
+                    bound: MIN_DAMPING_RATIO,
+                    inverse_inertia: a,
                 });
             }
         }

@@ -20,24 +20,24 @@ const JOINTS: [&str; 7] = [
 /// The crane's actuator efforts [N·m or N].
 const EFFORT: [f64; 7] = [8000.0, 95_500.0, 95_500.0, 37_300.0, 4000.0, 3000.0, 2000.0];
 
-/// Inertia per actuator over the workspace, other joints free [kg·m² or kg].
+/// Inertia per actuator over all postures, held joints turned too, with the other joints free [kg·m² or kg].
 const ELECTRIC: [[f64; 2]; 7] = [
-    [168.0, 2015.0],
-    [3900.0, 22_000.0],
-    [2600.0, 5400.0],
-    [1050.0, 1110.0],
-    [0.58, 1.5],
-    [1.0, 1.22],
-    [0.128, 0.167],
+    [112.5, 1922.0],
+    [3606.0, 22_960.0],
+    [2472.0, 6263.0],
+    [1055.0, 1114.0],
+    [0.436, 1.556],
+    [0.968, 1.266],
+    [0.1194, 0.1612],
 ];
 const HYDRAULIC: [[f64; 2]; 7] = [
-    [168.0, 2015.0],
-    [1280.0, 7500.0],
-    [940.0, 2600.0],
-    [46.0, 82.0],
-    [0.56, 1.25],
-    [1.0, 1.22],
-    [0.128, 0.167],
+    [112.5, 1914.0],
+    [1247.0, 7545.0],
+    [1034.0, 2976.0],
+    [48.3, 91.3],
+    [0.423, 1.282],
+    [0.968, 1.239],
+    [0.1181, 0.1607],
 ];
 
 fn table(text: &str) -> Result<GainTable, String> {

@@ -1,83 +1,18 @@
 //! What holds for every machine and state: both shipped machines, and random trees with random cylinder loops.
-#![expect(clippy::unwrap_used, reason = "helpers of tests are tests too")]
 
 mod support;
 
-use hiab_dynamics::{CraneModel, LoopFile, Wrench};
+use hiab_dynamics::LoopFile;
 use nalgebra::{DMatrix, Rotation3, Vector3};
 use proptest::prelude::*;
-use support::random::{Machine, machines};
-use support::{distance, max_abs, position_at, shipped, tolerance, velocity_at};
-
-/// A machine in a state.
-#[derive(Clone, Debug)]
-struct Case {
-    machine: Machine,
-    model: CraneModel,
-    position: Vec<f64>,
-    velocity: Vec<f64>,
-    acceleration: Vec<f64>,
-    wrench: Wrench,
-}
-
-/// Random machines most of the time, the shipped ones in between.
-fn cases() -> impl Strategy<Value = Case> {
-    let machines = prop_oneof![3 => machines(), 1 => proptest::sample::select(shipped().to_vec())];
-    let shares = |low: f64, high: f64| proptest::collection::vec(low..high, 18);
-    let wrench = (proptest::array::uniform3(-500.0..500.0), proptest::array::uniform3(-100.0..100.0));
-    (machines, 0.0..300.0, shares(0.0, 1.0), shares(-1.5, 1.5), shares(-5.0, 5.0), wrench).prop_map(
-        |(machine, payload, position, velocity, acceleration, (force, moment))| {
-            let model = machine.model().with_payload(payload).unwrap();
-            let n = model.actuators().len();
-            let (position, velocity) = (position_at(&model, &position), velocity_at(&model, &velocity));
-            let acceleration = acceleration[..n].to_vec();
-            Case { machine, model, position, velocity, acceleration, wrench: Wrench { force, moment } }
-        },
-    )
-}
-
-/// Compares slices, relative to the largest expected value or 1.
-#[track_caller]
-fn check_close(quantity: &str, found: &[f64], expected: &[f64], bound: f64) {
-    assert_eq!(found.len(), expected.len(), "{quantity}: wrong number of values");
-    let scale = max_abs(expected).max(1.0);
-    for (i, (f, e)) in found.iter().zip(expected).enumerate() {
-        let error = (f - e).abs() / scale;
-        assert!(
-            error <= bound,
-            "{quantity}[{i}] is {f}, not {e}: relative error {error:e} exceeds {bound:e}"
-        );
-    }
-}
-
-/// Central difference of `f` along `direction`.
-fn difference(point: &[f64], direction: &[f64], f: impl Fn(&[f64]) -> Vec<f64>) -> Vec<f64> {
-    let h = tolerance::DIFFERENCE_STEP;
-    let moved = |s: f64| -> Vec<f64> { point.iter().zip(direction).map(|(p, d)| p + s * d).collect() };
-    let (after, before) = (f(&moved(h)), f(&moved(-h)));
-    after.iter().zip(before).map(|(a, b)| (a - b) / (2.0 * h)).collect()
-}
-
-fn mass_matrix(model: &CraneModel, position: &[f64]) -> DMatrix<f64> {
-    let mut data = model.new_data();
-    model.update_dynamics(&mut data, position, &vec![0.0; position.len()]).unwrap();
-    DMatrix::from_row_slice(position.len(), position.len(), data.mass_matrix())
-}
-
-fn coriolis_matrix(model: &CraneModel, position: &[f64], velocity: &[f64]) -> DMatrix<f64> {
-    let n = position.len();
-    let (mut data, mut matrix) = (model.new_data(), vec![0.0; n * n]);
-    model.update_dynamics(&mut data, position, velocity).unwrap();
-    model.coriolis_matrix(&data, &mut matrix).unwrap();
-    DMatrix::from_row_slice(n, n, &matrix)
-}
-
-fn dot(a: &[f64], b: &[f64]) -> f64 {
-    a.iter().zip(b).map(|(a, b)| a * b).sum()
-}
+use support::state::{
+    Case, built, cases, check_close, coriolis_matrix, difference, dot, jacobian, mass_matrix,
+};
+use support::{crane, distance, max_abs, position_at, shipped, tolerance};
 
 proptest! {
-    #![proptest_config(ProptestConfig { failure_persistence: None, ..ProptestConfig::default() })]
+    // One machine is built for each case, which takes most of the time: there are many properties of a few cases each.
+    #![proptest_config(ProptestConfig { failure_persistence: None, cases: 128, ..ProptestConfig::default() })]
 
     #[test]
     fn forward_undoes_inverse_dynamics(case in cases()) {
@@ -99,13 +34,68 @@ proptest! {
     }
 
     #[test]
-    fn efforts_and_wrench_put_in_what_the_energy_gains(case in cases()) {
+    fn kinetic_energy_is_half_the_velocity_in_the_mass_matrix(case in cases()) {
+        let Case { model, position, velocity, .. } = &case;
+        let mut data = model.new_data();
+        model.update_dynamics(&mut data, position, velocity).unwrap();
+        let v = DMatrix::from_column_slice(velocity.len(), 1, velocity);
+        let expected = 0.5 * (v.transpose() * mass_matrix(model, position) * &v)[0];
+        check_close("kinetic energy", &[model.kinetic_energy(&data)], &[expected], tolerance::ROUNDING);
+    }
+
+    #[test]
+    fn inverse_effective_inertia_is_the_diagonal_of_the_inverse_mass_matrix(case in cases()) {
+        let Case { model, position, velocity, .. } = &case;
+        let mut data = model.new_data();
+        model.update_dynamics(&mut data, position, velocity).unwrap();
+        let mut found = vec![0.0; position.len()];
+        model.inverse_effective_inertia(&mut data, &mut found).unwrap();
+        let inverse = mass_matrix(model, position).try_inverse().unwrap();
+        for (k, found) in found.into_iter().enumerate() {
+            let error = (found / inverse[(k, k)] - 1.0).abs();
+            prop_assert!(error < tolerance::ROUND_TRIP, "actuator {}: relative error {:e}", k, error);
+        }
+    }
+
+    #[test]
+    fn a_wrench_acts_like_its_effort_through_the_jacobian(case in cases()) {
+        let Case { model, position, velocity, wrench, .. } = &case;
+        let n = position.len();
+        let mut data = model.new_data();
+        let (still, mut with_wrench, mut with_effort) = (vec![0.0; n], vec![0.0; n], vec![0.0; n]);
+        let w = DMatrix::from_column_slice(6, 1, &[wrench.force, wrench.moment].concat());
+        let effort = jacobian(model, position).transpose() * w;
+        model.forward_dynamics(&mut data, position, velocity, &still, Some(wrench), &mut with_wrench).unwrap();
+        model.forward_dynamics(&mut data, position, velocity, effort.as_slice(), None, &mut with_effort).unwrap();
+        check_close("acceleration", &with_wrench, &with_effort, tolerance::ROUND_TRIP);
+    }
+
+    #[test]
+    fn a_payload_acts_like_a_point_mass_at_the_tip(case in cases()) {
+        let Case { bare, model, position, velocity, .. } = &case;
+        let (n, payload) = (position.len(), model.payload());
+        let (mut data, mut data_bare) = (model.new_data(), bare.new_data());
+        model.update_dynamics(&mut data, position, velocity).unwrap();
+        bare.update_dynamics(&mut data_bare, position, velocity).unwrap();
+        let j = jacobian(bare, position).rows(0, 3).into_owned();
+        let m = mass_matrix(bare, position) + j.transpose() * &j * payload;
+        check_close("mass matrix", data.mass_matrix(), m.as_slice(), tolerance::ROUNDING);
+        let mut drift = DMatrix::from_column_slice(3, 1, &bare.tip_drift(&data_bare).linear);
+        drift[2] += 9.81;
+        let bias = DMatrix::from_column_slice(n, 1, data_bare.bias()) + j.transpose() * drift * payload;
+        check_close("bias", data.bias(), bias.as_slice(), tolerance::ROUNDING);
+    }
+
+    #[test]
+    fn efforts_less_friction_and_wrench_put_in_what_the_energy_gains(case in cases()) {
         let Case { model, position, velocity, acceleration, wrench, .. } = &case;
         let mut data = model.new_data();
         let mut effort = vec![0.0; position.len()];
         model.inverse_dynamics(&mut data, position, velocity, acceleration, Some(wrench), &mut effort).unwrap();
         let tip = model.tip_velocity(&data);
-        let of_efforts = dot(&effort, velocity);
+        let mut friction = vec![0.0; position.len()];
+        model.friction_effort(velocity, &mut friction).unwrap();
+        let of_efforts = dot(&effort, velocity) - dot(&friction, velocity);
         let of_wrench = dot(&wrench.force, &tip.linear) + dot(&wrench.moment, &tip.angular);
         let energy = |t: &[f64]| {
             let mut data = model.new_data();
@@ -194,16 +184,35 @@ proptest! {
             let column: Vec<f64> = (0..6).map(|row| jacobian[row * n + k]).collect();
             check_close("column of the jacobian", &column, &expected, tolerance::DIFFERENCE);
         }
-        let drift = model.tip_drift(&data);
+        let v = DMatrix::from_column_slice(n, 1, velocity);
+        let (twist, drift) = (model.tip_velocity(&data), model.tip_drift(&data));
+        let expected = DMatrix::from_row_slice(6, n, &jacobian) * v;
+        check_close("tip velocity", &[twist.linear, twist.angular].concat(), expected.as_slice(), tolerance::ROUNDING);
         let rate = difference(position, velocity, at);
         check_close("tip drift", &[drift.linear, drift.angular].concat(), &rate[12..], tolerance::DIFFERENCE);
     }
 
     #[test]
+    fn tree_slopes_and_drifts_are_derivatives_of_the_tree_positions(case in cases()) {
+        let Case { model, position, velocity, .. } = &case;
+        let mut data = model.new_data();
+        model.update_kinematics(&mut data, position, velocity).unwrap();
+        let at = |y: &[f64], pick: fn(&hiab_dynamics::Data) -> &[f64]| {
+            let mut data = model.new_data();
+            model.update_kinematics(&mut data, y, velocity).unwrap();
+            pick(&data).to_vec()
+        };
+        let rate = difference(position, velocity, |y| at(y, |data| data.tree_position()));
+        check_close("tree velocity", data.tree_velocity(), &rate, tolerance::DIFFERENCE);
+        let rate = difference(position, velocity, |y| at(y, |data| data.tree_velocity()));
+        check_close("tree drift", data.tree_drift(), &rate, tolerance::DIFFERENCE);
+    }
+
+    #[test]
     fn turning_base_and_gravity_together_changes_nothing(case in cases(), rpy in proptest::array::uniform3(-3.0..3.0)) {
-        let Case { machine, model, position, velocity, .. } = &case;
+        let Case { machine, plant, model, position, velocity, .. } = &case;
         let turn = Rotation3::from_euler_angles(rpy[0], rpy[1], rpy[2]);
-        let turned = machine.with_base_turned(rpy).model().with_payload(model.payload()).unwrap();
+        let turned = built(&machine.with_base_turned(rpy), plant.as_ref()).with_payload(model.payload()).unwrap();
         let turned = turned.with_gravity((turn * Vector3::new(0.0, 0.0, -9.81)).into()).unwrap();
         let (mut data, mut data_turned) = (model.new_data(), turned.new_data());
         model.update_dynamics(&mut data, position, velocity).unwrap();
@@ -217,6 +226,21 @@ proptest! {
     }
 
     #[test]
+    fn slewing_about_the_vertical_changes_no_term(case in cases(), turn in -3.0..3.0) {
+        let Case { machine, model, position, velocity, .. } = &case;
+        prop_assume!(shipped().iter().any(|shipped| shipped.urdf == machine.urdf));
+        let slew = model.actuator_index("slew_joint").unwrap();
+        let mut turned = position.clone();
+        turned[slew] += turn;
+        let (mut data, mut data_turned) = (model.new_data(), model.new_data());
+        model.update_dynamics(&mut data, position, velocity).unwrap();
+        model.update_dynamics(&mut data_turned, &turned, velocity).unwrap();
+        check_close("mass matrix", data_turned.mass_matrix(), data.mass_matrix(), tolerance::ROUNDING);
+        check_close("bias", data_turned.bias(), data.bias(), tolerance::ROUNDING);
+        check_close("gravity", data_turned.gravity_effort(), data.gravity_effort(), tolerance::ROUNDING);
+    }
+
+    #[test]
     fn both_halves_of_every_pin_coincide(case in cases()) {
         let Case { machine, model, position, velocity, .. } = &case;
         let mut data = model.new_data();
@@ -225,6 +249,26 @@ proptest! {
             let [a, b] = [closed_loop.frame_a, closed_loop.frame_b]
                 .map(|link| model.link_pose(&data, model.link_index(&link).unwrap()).position);
             prop_assert!(distance(a, b) < tolerance::ROUNDING, "{}: gap {:e}", closed_loop.name, distance(a, b));
+        }
+    }
+
+    #[test]
+    fn both_halves_of_a_pin_coincide_wherever_the_loop_closes(shares in proptest::array::uniform2(0.0..=1.0)) {
+        let model = crane();
+        let mut data = model.new_data();
+        let mut position = position_at(&model, &[0.5; 7]);
+        for (joint, share) in ["lift_joint", "tilt_joint"].into_iter().zip(shares) {
+            let k = model.actuator_index(joint).unwrap();
+            let (lower, upper) = model.solvable_range(k);
+            position[k] = lower + share * (upper - lower);
+        }
+        model.update_kinematics(&mut data, &position, &[0.0; 7]).unwrap();
+        for closed_loop in ["lift", "tilt"] {
+            let [a, b] = ["a", "b"].map(|half| {
+                let link = model.link_index(&format!("{closed_loop}_loop_{half}")).unwrap();
+                model.link_pose(&data, link).position
+            });
+            prop_assert!(distance(a, b) < tolerance::ROUNDING, "{}: gap {:e}", closed_loop, distance(a, b));
         }
     }
 

@@ -1,7 +1,8 @@
 //! The control laws of the whole machine: one controller per joint, or computed torque on a model.
 
 use adaptive_ctrl::{
-    AnyController, Command, EffortLimits, Input, JointController, Measurement, Reference, Saturation,
+    AnyController, Command, DiscreteLoop, EffortLimits, Input, JointController, Measurement, Reference,
+    Saturation,
 };
 use anyhow::{Context, Result, ensure};
 use hiab_dynamics::{CraneModel, Data};
@@ -87,7 +88,7 @@ pub struct TorqueGains {
 
 impl TorqueGains {
     /// Largest damping·period. Where the model is exact each joint is a double integrator of inertia 1, so this is the
-    /// bound of [`adaptive_ctrl::MAX_DAMPING_PER_TICK`].
+    /// bound of [`adaptive_ctrl::MAX_DAMPING_PER_TICK`], and [`adaptive_ctrl::MIN_DAMPING_RATIO`] is that of its ratio.
     fn check(self, joint: &str, period: f64) -> Result<()> {
         for (gain, value) in [("stiffness", self.stiffness), ("damping", self.damping)] {
             ensure!(value.is_finite() && value > 0.0, "{joint}: {gain} must be finite and > 0, got {value}");
@@ -95,10 +96,15 @@ impl TorqueGains {
         let per_tick = self.damping * period;
         let bound = adaptive_ctrl::MAX_DAMPING_PER_TICK;
         ensure!(per_tick <= bound, "{joint}: damping per tick is {per_tick}, must be at most {bound}");
-        // Jury's condition p < 2d of the sampled double integrator.
+        let sampled = DiscreteLoop {
+            damping_per_tick: per_tick,
+            stiffness_per_tick: self.stiffness * period * period,
+            integral_per_tick: 0.0,
+        };
+        let (ratio, least) = (sampled.damping_ratio(), adaptive_ctrl::MIN_DAMPING_RATIO);
         ensure!(
-            self.stiffness * period < 2.0 * self.damping,
-            "{joint}: stiffness {} is unstable with damping {} at a period of {period}",
+            ratio >= least,
+            "{joint}: stiffness {} with damping {} has a damping ratio of {ratio}, must be at least {least}",
             self.stiffness,
             self.damping
         );

@@ -31,6 +31,8 @@ pub enum Ending {
     Reached,
     /// The steps were used up.
     TimeOut,
+    /// An actuator has less effort than its load takes ([`Motion::overload`] says which): the brakes are set.
+    Overload,
 }
 
 /// What one step brought.
@@ -143,6 +145,8 @@ impl Environment {
         let reached = self.distance() <= task.reach_distance && speed < task.reach_speed;
         let ending = if reached {
             Some(Ending::Reached)
+        } else if self.motion.overload().is_some() {
+            Some(Ending::Overload)
         } else if self.steps >= task.max_steps {
             Some(Ending::TimeOut)
         } else {

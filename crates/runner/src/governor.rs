@@ -1,12 +1,13 @@
 //! Slows the reference where effort does not suffice for its full acceleration, and notices where it does not suffice at
 //! all.
 //!
-//! What a law commands beyond its feedforward is load that the model does not know: a payload, a force, a fault. While
-//! that is more than [`LOADED`] of an actuator's limit, or a command is saturated, the reference keeps to gentle
+//! What a law commands beyond what the reference takes of the crane without payload is load that the limits of the
+//! reference were not chosen for: a payload, a force, a fault; whether the law itself knows of it makes no difference.
+//! While that is more than [`LOADED`] of an actuator's limit, or a command is saturated, the reference keeps to gentle
 //! accelerations ([`GENTLE`]), and to velocities from which gentle braking stops inside the limits. With nothing unknown
 //! it never acts.
 
-use adaptive_ctrl::{Command, Reference, Saturation};
+use adaptive_ctrl::{Command, Saturation};
 use serde::{Deserialize, Serialize};
 
 /// Share of an actuator's effort limit from which on an unexplained effort counts as load.
@@ -62,7 +63,7 @@ impl Governor {
         Self { joints: vec![Seen::default(); joints], commands: 0, loaded: 0, gentle_periods: 0 }
     }
 
-    /// A new start under efforts of which the feedforward explains only a part; what was counted stays.
+    /// A new start under efforts of which the crane without payload explains only a part; what was counted stays.
     pub(crate) fn start(&mut self, unexplained: impl Iterator<Item = (f64, f64)>) {
         *self = Self { gentle_periods: self.gentle_periods, ..Self::new(self.joints.len()) };
         for (seen, (effort, limit)) in self.joints.iter_mut().zip(unexplained) {
@@ -70,11 +71,11 @@ impl Governor {
         }
     }
 
-    /// Notes a tick's command of one joint whose effort limit is `limit`.
-    pub(crate) fn note(&mut self, joint: usize, reference: &Reference, command: &Command, limit: f64) {
+    /// Notes a tick's command of one joint that takes the effort `expected` without load and exerts `limit` at most.
+    pub(crate) fn note(&mut self, joint: usize, expected: f64, command: &Command, limit: f64) {
         let seen = &mut self.joints[joint];
         seen.saturated += u32::from(command.saturation != Saturation::None);
-        seen.is_loaded |= (command.effort - reference.effort).abs() > LOADED * limit;
+        seen.is_loaded |= (command.effort - expected).abs() > LOADED * limit;
     }
 
     /// Notes that a tick is over.
@@ -111,7 +112,7 @@ mod tests {
     fn period(governor: &mut Governor, effort: f64, saturation: Saturation, error: f64) -> bool {
         for _ in 0..10 {
             let command = Command { effort, saturation, input: Input::Used };
-            governor.note(0, &Reference { effort: 50.0, ..Reference::default() }, &command, 100.0);
+            governor.note(0, 50.0, &command, 100.0);
             governor.tick();
         }
         governor.judge([error].into_iter())

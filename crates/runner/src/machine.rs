@@ -1,5 +1,7 @@
 //! The crane with its limits, safe zones and controllers, put together from the files that a configuration names.
 
+mod survey;
+
 use std::path::Path;
 
 use adaptive_ctrl::{AdaptiveController, Bounds, EffortLimits, GainTable, Gains, InverseInertia, JointSpec};
@@ -15,11 +17,11 @@ use crate::observation::{Scaling, ScalingSpec};
 use crate::region::Regions;
 use crate::store;
 
+pub use survey::corner_postures;
+use survey::{Survey, survey};
+
 /// Reach distances that count as near when the policy is shown where the target is.
 const NEAR: f64 = 10.0;
-
-/// Postures per moving joint at which the crane is surveyed.
-const SURVEY_POINTS: usize = 7;
 
 /// One joint of the machine.
 #[derive(Debug)]
@@ -51,11 +53,23 @@ pub enum Zones {
     ClosedForm,
 }
 
+/// What the laws of single joints are told of the effort that the reference takes.
+#[derive(Clone, Debug)]
+pub enum FeedforwardModel {
+    /// Nothing: the paper's law.
+    None,
+    /// What the crane takes without payload, [`Machine::believed_model`].
+    Believed,
+    /// What another crane takes.
+    Other(Box<CraneModel>),
+}
+
 /// Everything about the crane that does not change while it moves.
 #[derive(Debug)]
 pub struct Machine {
     model: CraneModel,
-    nominal: Option<CraneModel>,
+    believed: CraneModel,
+    feedforward: FeedforwardModel,
     joints: Vec<Joint>,
     moving: Vec<usize>,
     held: Vec<usize>,
@@ -66,19 +80,6 @@ pub struct Machine {
     task: Task,
     reward: Reward,
     regions: Regions,
-}
-
-/// Extremes over the postures that the task visits.
-#[derive(Debug)]
-struct Survey {
-    /// Range of the diagonal of M⁻¹, by joint.
-    inverse_inertia: Vec<Interval>,
-    /// Range of every boom's angle \[rad\].
-    boom_angle: Vec<Interval>,
-    /// Largest angular velocity of every boom [rad/s].
-    boom_speed: Vec<f64>,
-    /// Largest tip speed that a single moving joint causes [m/s].
-    tip_speed: f64,
 }
 
 impl Machine {
@@ -108,7 +109,8 @@ impl Machine {
             .filter_map(|closed_loop| closed_loop.dependent.first())
             .filter_map(|joint| model.tree_joint_index(joint))
             .collect::<Vec<_>>();
-        let survey = survey(&model, config, &moving, &booms, &rest_posture)?;
+        let believed = load_unloaded_model(config)?;
+        let survey = survey(&model, &believed, &moving, &booms, &rest_posture)?;
         let names: Vec<&str> = model.actuators().iter().map(Actuator::name).collect();
         let gains = gains.in_order(&names).with_context(|| crane.gains.display().to_string())?;
         let period = config.rates.controller_period();
@@ -139,13 +141,14 @@ impl Machine {
             })
             .collect::<Result<Vec<_>>>()?;
         let (rates, task, reward) = (config.rates, config.task.clone(), config.reward);
-        let nominal = match crane.feedforward {
-            Feedforward::None => None,
-            Feedforward::Nominal => Some(load_unloaded_model(config)?),
+        let feedforward = match crane.feedforward {
+            Feedforward::None => FeedforwardModel::None,
+            Feedforward::Nominal => FeedforwardModel::Believed,
         };
         Ok(Self {
             model,
-            nominal,
+            believed,
+            feedforward,
             joints,
             moving,
             held,
@@ -166,10 +169,10 @@ impl Machine {
         self
     }
 
-    /// The same machine whose controllers know `model`, or none.
+    /// The same machine with another feedforward.
     #[must_use]
-    pub fn with_nominal_model(mut self, model: Option<CraneModel>) -> Self {
-        self.nominal = model;
+    pub fn with_feedforward(mut self, feedforward: FeedforwardModel) -> Self {
+        self.feedforward = feedforward;
         self
     }
 
@@ -179,10 +182,16 @@ impl Machine {
         &self.model
     }
 
-    /// What the controllers know of the crane, if anything.
+    /// The crane without payload, for whose loads the limits of the reference are chosen.
     #[must_use]
-    pub fn nominal_model(&self) -> Option<&CraneModel> {
-        self.nominal.as_ref()
+    pub fn believed_model(&self) -> &CraneModel {
+        &self.believed
+    }
+
+    /// What the laws of single joints know of it.
+    #[must_use]
+    pub fn feedforward(&self) -> &FeedforwardModel {
+        &self.feedforward
     }
 
     /// Every joint, in the order of the model's actuators.
@@ -425,61 +434,4 @@ fn assign_joints(model: &CraneModel, task: &Task) -> Result<(Vec<usize>, Vec<usi
         );
     }
     Ok((moving, held, posture))
-}
-
-/// Visits a grid of postures: every moving joint over its range, with and without the payload.
-fn survey(
-    model: &CraneModel,
-    config: &ConfigSpec,
-    moving: &[usize],
-    booms: &[usize],
-    rest_posture: &[f64],
-) -> Result<Survey> {
-    let joints = model.actuators().len();
-    let empty = Interval::new(f64::INFINITY, f64::NEG_INFINITY);
-    let mut survey = Survey {
-        inverse_inertia: vec![empty; joints],
-        boom_angle: vec![empty; booms.len()],
-        boom_speed: vec![0.0; booms.len()],
-        tip_speed: 0.0,
-    };
-    let unloaded = load_unloaded_model(config)?;
-    let still = vec![0.0; joints];
-    let mut diagonal = vec![0.0; joints];
-    let mut jacobian = vec![0.0; 6 * joints];
-    for (model, is_known) in [(model, false), (&unloaded, true)] {
-        let mut data = model.new_data();
-        for number in 0..SURVEY_POINTS.pow(moving.len() as u32) {
-            let mut posture = rest_posture.to_vec();
-            let mut rest = number;
-            for &joint in moving {
-                let actuator = &model.actuators()[joint];
-                let share = (rest % SURVEY_POINTS) as f64 / (SURVEY_POINTS - 1) as f64;
-                posture[joint] = actuator.lower() + share * (actuator.upper() - actuator.lower());
-                rest /= SURVEY_POINTS;
-            }
-            model.update_dynamics(&mut data, &posture, &still)?;
-            // The controllers are built for the crane that they know: no payload.
-            if is_known {
-                model.inverse_effective_inertia(&mut data, &mut diagonal)?;
-                for (range, &value) in survey.inverse_inertia.iter_mut().zip(&diagonal) {
-                    *range = range.including(value);
-                }
-            }
-            for (boom, &tree_joint) in booms.iter().enumerate() {
-                let limit = model.actuators()[model.driving_actuator(tree_joint)].velocity_limit();
-                let speed = data.tree_slope()[tree_joint].abs() * limit;
-                survey.boom_angle[boom] = survey.boom_angle[boom].including(data.tree_position()[tree_joint]);
-                survey.boom_speed[boom] = survey.boom_speed[boom].max(speed);
-            }
-            model.tip_jacobian(&data, &mut jacobian)?;
-            for &joint in moving {
-                let column = [jacobian[joint], jacobian[joints + joint], jacobian[2 * joints + joint]];
-                let speed = column.iter().map(|x| x * x).sum::<f64>().sqrt();
-                let limit = model.actuators()[joint].velocity_limit();
-                survey.tip_speed = survey.tip_speed.max(speed * limit);
-            }
-        }
-    }
-    Ok(survey)
 }

@@ -15,7 +15,7 @@ use crate::evidence::Evidence;
 use crate::feedforward::Feedforward;
 use crate::governor::{Governor, Overload};
 use crate::interpolation::Interpolation;
-use crate::machine::{Joint, Machine};
+use crate::machine::{FeedforwardModel, Joint, Machine};
 use crate::surroundings::{Surroundings, Tick};
 
 /// Rounds after which load and resting place agree to rounding.
@@ -44,7 +44,12 @@ pub struct Motion {
     is_late: bool,
     /// What the actuators exert.
     exerted: Vec<f64>,
-    feedforward: Feedforward,
+    /// What the crane takes that the controllers are built for: beyond that is load.
+    expected: Feedforward,
+    /// What the laws are told instead, if not that.
+    told: Option<Feedforward>,
+    /// What held the crane at the start beyond what the laws are told: they are told it from then on \[N·m or N\].
+    taken_over: Vec<f64>,
     /// Where every joint should be at the end of the present tick.
     wanted: Vec<State>,
     /// Controllers' inputs and outputs of the present tick.
@@ -105,7 +110,13 @@ impl Motion {
             velocity: vec![0.0; joints],
             acceleration: vec![0.0; joints],
             effort: vec![0.0; joints],
-            feedforward: Feedforward::new(machine.nominal_model(), joints),
+            expected: Feedforward::new(Some(machine.believed_model()), joints),
+            told: match machine.feedforward() {
+                FeedforwardModel::Believed => None,
+                FeedforwardModel::None => Some(Feedforward::new(None, joints)),
+                FeedforwardModel::Other(model) => Some(Feedforward::new(Some(model), joints)),
+            },
+            taken_over: vec![0.0; joints],
             velocity_before: vec![0.0; joints],
             undisturbed: vec![0.0; joints],
             reference: vec![at_rest(0.0); joints],
@@ -119,8 +130,9 @@ impl Motion {
 
     /// Puts the crane to rest with its references at `position`, held by its controllers.
     ///
-    /// A joint rests a little beside its reference under the load that the feedforward does not know; the crane is put
-    /// there, and its first command is what holds it. `JointController::start_holding` says how far.
+    /// The effort that holds it then is known: what the feedforward leaves of it is added to the feedforward from then
+    /// on, and every law starts without an error. Without a feedforward a joint rests a little beside its reference; the
+    /// crane is put there, and its first command is what holds it. `JointController::start_holding` says how far.
     ///
     /// # Errors
     /// A position that no loop closes at, or a load that the actuators cannot hold.
@@ -133,7 +145,8 @@ impl Motion {
             self.reference[joint] = at_rest(position);
             self.between[joint] = Interpolation::at_rest(position);
         }
-        self.feedforward.update(machine.nominal_model(), &self.between, 0.0, 0.0)?;
+        self.expect(&machine, 0.0, 0.0)?;
+        self.taken_over.fill(0.0);
         // The load depends on where the crane rests, and that a little on the load: each round leaves about a thousandth
         // of what the last one left.
         let (mut unknown, mut reference) = (vec![0.0; position.len()], vec![0.0; position.len()]);
@@ -141,7 +154,13 @@ impl Motion {
             machine.model().update_dynamics(&mut self.data, &self.position, &self.velocity)?;
             self.effort.copy_from_slice(self.data.gravity_effort());
             for (joint, unknown) in unknown.iter_mut().enumerate() {
-                *unknown = self.effort[joint] - self.feedforward.effort()[joint];
+                *unknown = self.effort[joint] - self.feedforward()[joint];
+            }
+            if !matches!(machine.feedforward(), FeedforwardModel::None) {
+                // Refuses what the actuators cannot hold at all.
+                self.controllers.hold(&machine, &self.position, &self.effort, &mut reference)?;
+                self.taken_over.copy_from_slice(&unknown);
+                unknown.fill(0.0);
             }
             self.controllers.hold(&machine, &self.position, &unknown, &mut reference)?;
             for (joint, reference) in reference.iter().enumerate() {
@@ -149,8 +168,9 @@ impl Motion {
             }
         }
         self.time = 0.0;
+        let load = self.effort.iter().zip(self.expected.effort()).map(|(held, expected)| held - expected);
         let limits = machine.joints().iter().map(|joint| joint.effort_limit);
-        self.governor.start(unknown.into_iter().zip(limits));
+        self.governor.start(load.zip(limits));
         self.is_late = false;
         self.effort_before.copy_from_slice(&self.effort);
         self.exerted.copy_from_slice(&self.effort);
@@ -285,14 +305,14 @@ impl Motion {
         self.is_late = tick == Tick::Late;
         self.effort_before.copy_from_slice(&self.effort);
         let period = machine.rates().controller_period();
-        self.feedforward.update(machine.nominal_model(), &self.between, ahead, period)?;
+        self.expect(machine, ahead, period)?;
         for joint in 0..self.between.len() {
             let wanted = self.between[joint].state_at(ahead);
             self.references[joint] = Reference {
                 position: wanted.position,
                 velocity: wanted.velocity,
                 acceleration: self.between[joint].state_at(ahead + 0.5 * period).acceleration,
-                effort: self.feedforward.effort()[joint],
+                effort: self.feedforward()[joint] + self.taken_over[joint],
             };
             let (position, velocity) = self.surroundings.sensed(self.position[joint], self.velocity[joint]);
             self.measured[joint] = Measurement { position, velocity };
@@ -301,12 +321,29 @@ impl Motion {
         self.governor.tick();
         for (joint, command) in self.commands.iter().enumerate() {
             let limit = machine.joints()[joint].effort_limit;
-            self.governor.note(joint, &self.references[joint], command, limit);
+            self.governor.note(joint, self.expected.effort()[joint], command, limit);
             self.effort[joint] = command.effort;
             self.evidence.commands += 1;
             self.evidence.saturated_commands += u64::from(command.saturation != Saturation::None);
         }
         Ok(())
+    }
+
+    /// The effort that the reference takes, `ahead` of its last sample and for `period` from then: as the crane is
+    /// believed to be, and as the laws are told.
+    fn expect(&mut self, machine: &Machine, ahead: f64, period: f64) -> Result<()> {
+        self.expected.update(Some(machine.believed_model()), &self.between, ahead, period)?;
+        match (machine.feedforward(), &mut self.told) {
+            (FeedforwardModel::Other(model), Some(told)) => {
+                told.update(Some(model), &self.between, ahead, period)
+            }
+            _ => Ok(()),
+        }
+    }
+
+    /// What the laws are told of it [N·m or N].
+    fn feedforward(&self) -> &[f64] {
+        self.told.as_ref().unwrap_or(&self.expected).effort()
     }
 
     fn integrate(&mut self, machine: &Machine, period: f64) -> Result<()> {

@@ -5,15 +5,14 @@
 //! rates). Then, `budget`
 //! times: every gain of every joint is multiplied by a random factor and the training scenarios are played; the joints
 //! whose own worst error fell take their new gains together, and keep them if the power mean of all joints' worst errors
-//! falls. Errors count in units of what is allowed. Gains that a law's stability conditions refuse are drawn again. One
-//! seed gives one result.
+//! falls. Errors count in units of what is allowed. Gains that the conditions on stability and damping refuse, which are
+//! the same for every law, are drawn again. One seed gives one result.
 
 pub mod candidate;
+pub mod coupling;
 pub mod file;
 
-use adaptive_ctrl::coupled_damping_per_tick;
-use anyhow::{Context, Result, ensure};
-use hiab_dynamics::CraneModel;
+use anyhow::{Context, Result};
 use rand_xoshiro::Xoshiro256PlusPlus;
 use rand_xoshiro::rand_core::{RngCore, SeedableRng};
 
@@ -21,6 +20,7 @@ use crate::motion::Motion;
 use crate::track::play::{Ending, play};
 use crate::track::scenario::Scenario;
 use crate::track::setup::{Law, LawGains, Setup, Stage};
+use crate::tune::coupling::Coupling;
 
 /// Scenarios of the training set, by plant.
 pub const TRAINING: [(&str, &[&str]); 2] =
@@ -35,7 +35,7 @@ const HELD: f64 = 1.5e-3;
 /// Power of the mean over the joints that is to fall: near enough to the worst joint, and smooth.
 const POWER: i32 = 4;
 
-/// Largest [`coupled_damping_per_tick`] of all joints together that a candidate may have.
+/// Largest [`adaptive_ctrl::coupled_damping_per_tick`] of all joints together that a candidate may have.
 const MAX_COUPLED_DAMPING: f64 = 1.0;
 
 /// Draws of gains until one set is stable.
@@ -86,12 +86,14 @@ pub fn tune(tuning: Tuning) -> Result<Tuned> {
         .iter()
         .map(|name| {
             let scenario = Scenario::read_training(name)?;
-            let stage = Stage::load(&scenario, Setup { lyapunov: false, ..Setup::of(tuning.law) })?;
+            let stage =
+                Stage::load(&scenario, Setup { lyapunov: false, tip: false, ..Setup::of(tuning.law) })?;
             let units = units(&stage)?;
             Ok(Course { scenario, stage, units })
         })
         .collect::<Result<Vec<_>>>()?;
     let stage = &courses[0].stage;
+    let coupling = Coupling::new(stage.believed(), stage.machine.rates().controller_period())?;
     let mut draws = Draws(Xoshiro256PlusPlus::seed_from_u64(tuning.seed));
     let shipped = match stage.gains(&courses[0].scenario) {
         Ok(gains) => Some(worst(&score(&courses, &gains)?)),
@@ -104,14 +106,14 @@ pub fn tune(tuning: Tuning) -> Result<Tuned> {
     for round in 0..tuning.budget {
         // From half a decade down to a twentieth.
         let spread = 0.5 * 0.1_f64.powf(f64::from(round) / f64::from(tuning.budget.max(1)));
-        let Some(tried) = draw(stage, &best, spread, &mut draws)? else { continue };
+        let Some(tried) = draw(stage, &coupling, &best, spread, &mut draws) else { continue };
         let found = score(&courses, &tried)?;
         let better: Vec<bool> = found.iter().zip(&scores).map(|(new, old)| new < old).collect();
         if !better.contains(&true) {
             continue;
         }
         let mixed = candidate::mix(&best, &tried, &better);
-        if !is_stable(stage, &mixed)? {
+        if !is_stable(stage, &coupling, &mixed) {
             continue;
         }
         let after = score(&courses, &mixed)?;
@@ -187,51 +189,29 @@ fn worst(scores: &[f64]) -> f64 {
 }
 
 /// Gains near `best` that are stable; none if the draws are used up.
-fn draw(stage: &Stage, best: &LawGains, spread: f64, draws: &mut Draws) -> Result<Option<LawGains>> {
+fn draw(
+    stage: &Stage,
+    coupling: &Coupling,
+    best: &LawGains,
+    spread: f64,
+    draws: &mut Draws,
+) -> Option<LawGains> {
     for _ in 0..MAX_DRAWS {
         let tried = candidate::near(best, &mut || 10.0_f64.powf(spread * draws.symmetric()));
         // Joints that are refused keep what they have.
         let Some(tried) = candidate::accepted(stage, best, tried) else { continue };
-        if is_stable(stage, &tried)? {
-            return Ok(Some(tried));
+        if is_stable(stage, coupling, &tried) {
+            return Some(tried);
         }
     }
-    Ok(None)
+    None
 }
 
 /// Whether the law accepts the gains and all joints together stay calm over the workspace.
-fn is_stable(stage: &Stage, gains: &LawGains) -> Result<bool> {
-    if stage.controllers(gains).is_err() {
-        return Ok(false);
-    }
-    let Some(damping) = candidate::damping(gains) else { return Ok(true) };
-    Ok(coupled_damping(stage, stage.believed(), &damping)? <= MAX_COUPLED_DAMPING)
-}
-
-/// Largest [`coupled_damping_per_tick`] over a grid of postures of `model`, a crane like that of the stage.
-///
-/// # Errors
-/// The crane has not seven joints.
-pub fn coupled_damping(stage: &Stage, model: &CraneModel, damping: &[f64]) -> Result<f64> {
-    const JOINTS: usize = 7;
-    let damping: [f64; JOINTS] = damping.try_into().ok().context("a crane of seven joints")?;
-    ensure!(model.actuators().len() == JOINTS, "a crane of seven joints");
-    let mut data = model.new_data();
-    let mut worst = 0.0_f64;
-    for posture in postures(stage) {
-        let mut inverse = [[0.0; JOINTS]; JOINTS];
-        let (still, mut bias, mut acceleration) = ([0.0; JOINTS], [0.0; JOINTS], [0.0; JOINTS]);
-        model.forward_dynamics(&mut data, &posture, &still, &still, None, &mut bias)?;
-        for (joint, row) in inverse.iter_mut().enumerate() {
-            let mut effort = [0.0; JOINTS];
-            effort[joint] = 1.0;
-            model.forward_dynamics(&mut data, &posture, &still, &effort, None, &mut acceleration)?;
-            *row = std::array::from_fn(|n| acceleration[n] - bias[n]);
-        }
-        let period = stage.machine.rates().controller_period();
-        worst = worst.max(coupled_damping_per_tick(&inverse, &damping, period));
-    }
-    Ok(worst)
+fn is_stable(stage: &Stage, coupling: &Coupling, gains: &LawGains) -> bool {
+    let calm = candidate::damping(gains)
+        .is_none_or(|damping| coupling.damping_per_tick(&damping) <= MAX_COUPLED_DAMPING);
+    calm && stage.controllers(gains).is_ok()
 }
 
 /// The draws of a tuning.

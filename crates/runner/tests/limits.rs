@@ -7,7 +7,7 @@ use std::sync::Arc;
 
 use runner::config::ConfigSpec;
 use runner::draw::{Purpose, Stream};
-use runner::environment::Environment;
+use runner::environment::{Ending, Environment, Episode};
 use runner::evidence::Evidence;
 use runner::machine::Machine;
 use runner::stage::Stage;
@@ -65,6 +65,25 @@ fn no_policy_breaks_a_limit() {
         assert_eq!(seen.saturated_commands, 0, "{name}: the limits are to leave effort for every reference");
         assert!(seen.held_joint_tip_error < 1e-4, "{name}: held joints {} m", seen.held_joint_tip_error);
     }
+}
+
+#[test]
+fn an_episode_in_which_the_load_cannot_be_held_ends_as_an_overload() {
+    // A load that can be held low, and then up with it: more than lift bears.
+    let machine = machine(|config| config.crane.payload = 700.0);
+    let mut environment = Environment::new(Arc::clone(&machine), false);
+    let mut posture = machine.rest_posture().to_vec();
+    for (&joint, position) in machine.moving().iter().zip([0.16, 0.16, 0.23]) {
+        posture[joint] = position;
+    }
+    environment.start(&Episode { start: posture, target: [9.0, 0.0, 9.0] }).unwrap();
+    let ending = (0..300).find_map(|_| environment.step(&[1.0, 0.0, 0.0]).unwrap().ending);
+    assert_eq!(ending, Some(Ending::Overload));
+    let overload = environment.motion().overload().unwrap();
+    assert!(
+        machine.moving().iter().any(|&joint| machine.joints()[joint].name == overload.joint),
+        "{overload:?}"
+    );
 }
 
 #[test]

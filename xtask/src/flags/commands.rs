@@ -234,7 +234,7 @@ pub(crate) const COMMANDS: &[Command] = &[
         flags: &[
             optional("controller", "LAW", "adaptive, pd, pid or computed-torque, instead of all"),
             optional("plant", "PLANT", "electric or light (hydraulic and rigid), instead of both"),
-            optional("budget", "N", "rounds of the search per law (default 100)"),
+            optional("budget", "N", "rounds of the search per law (default 25)"),
             optional("seed", "N", "seed of the search (default 0)"),
         ],
         example: "cargo xtask tune --controller pd --plant electric",

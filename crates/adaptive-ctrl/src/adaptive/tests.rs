@@ -74,9 +74,12 @@ fn parameters_stop_at_what_the_sampled_loop_bears() {
     }
     assert_eq!(controller.adaptation(), Adaptation::AtCeiling);
     assert_eq!(controller.parameters(), controller.parameter_ceilings());
-    // ½(k₅ + k₆φ̂₂)·A_max·T = 0.5 and ½(k₁ + k₂φ̂₁) = ½k₅·A_min = 5.
+    // ½(k₅ + k₆φ̂₂)·A_max·T = 0.5, and ½(k₁ + k₂φ̂₁) with which the least damping, ½k₅, still leaves the least ratio.
     assert!((controller.damping() * 2.0 * 0.01 - MAX_DAMPING_PER_TICK).abs() < 1e-12);
-    assert!((controller.parameters().position - 2.0).abs() < 1e-12);
+    let rate = 0.5 * (GAINS.k1 + GAINS.k2 * controller.parameters().position);
+    let at_heaviest =
+        LinearLaw { stiffness: 1.0 + 10.0 * rate, damping: 10.0, integral: 0.0 }.sampled(0.5, 0.01);
+    assert!((at_heaviest.damping_ratio() - MIN_DAMPING_RATIO).abs() < 1e-12, "{rate}");
 }
 
 #[test]
@@ -183,10 +186,15 @@ fn refuses_damping_that_one_tick_overdoes_and_says_by_how_much() {
 
 #[test]
 fn refuses_a_virtual_control_that_velocity_cannot_follow() {
-    let error = refusal(GainsSpec { k1: 10.2, ..GAINS }, joint()); // ½·10.2 > ½·20·0.5 = 5
-    assert_eq!(
-        error,
-        StabilityError::VirtualControlTooFast { virtual_rate: 5.1, velocity_rate: 5.0, inverse_inertia: 0.5 }
+    // ½·9.8 = 4.9 is below ½·20·0.5 = 5, but not below 5/(1 + ½·0.05), which is what sampling leaves.
+    let error = refusal(GainsSpec { k1: 9.8, ..GAINS }, joint());
+    assert!(
+        matches!(error, StabilityError::Underdamped { damping_ratio, inverse_inertia, .. }
+            if inverse_inertia == 0.5 && damping_ratio > 0.48 && damping_ratio < MIN_DAMPING_RATIO),
+        "{error}"
+    );
+    assert!(
+        AdaptiveController::new(Gains::try_from(GainsSpec { k1: 9.4, ..GAINS }).unwrap(), joint()).is_ok()
     );
 }
 

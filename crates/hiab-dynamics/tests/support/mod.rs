@@ -7,6 +7,7 @@
 )]
 
 pub mod random;
+pub mod state;
 pub mod tolerance;
 
 use hiab_dynamics::CraneModel;

@@ -15,10 +15,14 @@ use crate::region::Regions;
 use crate::store;
 
 /// Distance of neighbouring tip positions \[m\].
-const SPACING: f64 = 0.1;
+const SPACING: f64 = 0.05;
+
+/// Width of the picture \[px\]: a crane reaches twice as far up and down as ahead.
+#[cfg(feature = "figures")]
+const WIDTH: f64 = 520.0;
 
 /// Values per redundant joint that are tried.
-const SAMPLES: usize = 9;
+const SAMPLES: usize = 25;
 
 /// Where the chart is written beside its summary.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
@@ -117,22 +121,30 @@ fn summary(chart: &LoadChart, actuators: &[&str]) -> Result<String> {
 fn picture(chart: &LoadChart) -> Result<String> {
     use figures::{Axis, Chart, Heat, Layer, Panel, Proportion, SvgTheme};
 
-    let edges = |axis: hiab_dynamics::Axis| -> Vec<f64> {
-        let half = 0.5 * (axis.value(1) - axis.value(0));
-        (0..axis.points).map(|i| axis.value(i) - half).chain([axis.to + half]).collect()
+    // What is out of reach all along an edge is left out.
+    let reached = || chart.points.iter().enumerate().filter(|(_, point)| point.is_some()).map(|(i, _)| i);
+    let span = |indices: &mut dyn Iterator<Item = usize>| {
+        indices.fold((usize::MAX, 0), |(least, most), i| (least.min(i), most.max(i)))
     };
-    let values: Vec<f64> =
-        chart.points.iter().map(|point| point.as_ref().map_or(f64::NAN, |point| point.payload)).collect();
+    let (left, right) = span(&mut reached().map(|i| i % chart.x.points));
+    let (bottom, top) = span(&mut reached().map(|i| i / chart.x.points));
+    let edges = |axis: hiab_dynamics::Axis, (first, last): (usize, usize)| -> Vec<f64> {
+        let half = 0.5 * (axis.value(1) - axis.value(0));
+        (first..=last).map(|i| axis.value(i) - half).chain([axis.value(last) + half]).collect()
+    };
+    let value = |x: usize, z: usize| chart.points[z * chart.x.points + x].as_ref().map(|point| point.payload);
+    let values = (bottom..=top).flat_map(|z| (left..=right).map(move |x| value(x, z).unwrap_or(f64::NAN)));
     let heat = Heat {
         quantity: Axis::new("Largest payload", "kg"),
-        x_edges: edges(chart.x),
-        y_edges: edges(chart.z),
-        values,
+        x_edges: edges(chart.x, (left, right)),
+        y_edges: edges(chart.z, (bottom, top)),
+        values: values.collect(),
     };
     let panel = Panel::new(Axis::new("Height of the tip", "m"), vec![Layer::Heat(heat)]);
     let chart = Chart {
         panels: vec![panel],
         proportion: Proportion::Equal,
+        width: WIDTH,
         ..Chart::new("Static load chart", Axis::new("Distance from the slew axis", "m"))
     };
     Ok(chart.draw().context("load chart")?.svg(SvgTheme::Reader))

@@ -7,7 +7,7 @@ use crate::tune::file::tune_to_file;
 use crate::tune::{TRAINING, Tuning};
 
 /// Rounds per law, unless said otherwise.
-const DEFAULT_BUDGET: u32 = 100;
+const DEFAULT_BUDGET: u32 = 25;
 
 /// What `tune` is asked for.
 #[derive(Clone, Debug)]

@@ -47,6 +47,8 @@ pub struct JointMeasures {
     /// From when every reference has come to rest and the last force or fault has set in or ended, until the error stays
     /// within 0.1 mm or 0.1 mrad \[s\]; none if it never does.
     pub settling_time_s: Option<f64>,
+    /// Largest displacement of the tip by this joint's error alone \[m\], to first order; none for a joint that moves.
+    pub held_joint_tip_error_m: Option<f64>,
     /// Ticks beyond the actuator's limits.
     pub violations: Violations,
     /// Work that the actuator did on the crane \[J\], what it took back not counted.
@@ -65,6 +67,8 @@ pub(crate) struct Meter {
     violations: Violations,
     last_acceleration: f64,
     work: f64,
+    /// Of a held joint, by its error alone.
+    tip_error: Option<f64>,
     /// When the error was last too large to be settled.
     unsettled: f64,
 }
@@ -126,6 +130,11 @@ impl Meter {
         }
     }
 
+    /// Notes that the error of this held joint displaces the tip by `displacement` \[m\].
+    pub(crate) fn add_tip_error(&mut self, displacement: f64) {
+        self.tip_error = Some(displacement.max(self.tip_error.unwrap_or(0.0)));
+    }
+
     /// The result, if the last thing to settle from was at `calm` and the run ended at `end` \[s\].
     pub(crate) fn result(&self, calm: f64, end: f64, period: f64) -> JointMeasures {
         let ticks = self.ticks;
@@ -138,6 +147,7 @@ impl Meter {
             jerk_rms: self.jerk.spread(ticks).rms,
             saturation_rate: self.saturated as f64 / ticks.max(1) as f64,
             settling_time_s: is_settled.then_some((self.unsettled - calm).max(0.0)),
+            held_joint_tip_error_m: self.tip_error,
             violations: self.violations,
             work: self.work,
         }

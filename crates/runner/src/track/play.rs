@@ -71,6 +71,8 @@ struct Player<'a> {
     last_moved: f64,
     tick: u32,
     holdable: bool,
+    /// Scratch: the tip's, at the last tick.
+    jacobian: Vec<f64>,
     trouble: Option<anyhow::Error>,
 }
 
@@ -101,6 +103,7 @@ pub fn play(
         last_moved: 0.0,
         tick: 0,
         holdable: true,
+        jacobian: vec![0.0; 6 * machine.joints().len()],
         trouble: None,
     };
     let mut actions = vec![Request::Missing; machine.moving().len()];
@@ -179,8 +182,26 @@ impl Player<'_> {
                 self.trouble.get_or_insert(error);
             }
             self.holdable &= self.can_be_held(motion);
+            if self.stage.setup().tip
+                && let Err(error) = self.measure_held_joints(motion)
+            {
+                self.trouble.get_or_insert(error);
+            }
         }
         observer.see(motion, time);
+    }
+
+    /// What the error of every held joint alone makes of the tip: its column of the Jacobian.
+    fn measure_held_joints(&mut self, motion: &Motion) -> Result<()> {
+        let machine = &self.stage.machine;
+        let joints = machine.joints().len();
+        machine.model().tip_jacobian(motion.dynamics(), &mut self.jacobian)?;
+        for &joint in machine.held() {
+            let error = motion.position()[joint] - motion.wanted()[joint].position;
+            let lever = (0..3).map(|axis| self.jacobian[axis * joints + joint].powi(2)).sum::<f64>().sqrt();
+            self.meters[joint].add_tip_error(lever * error.abs());
+        }
+        Ok(())
     }
 
     /// Whether what is left of every actuator's effort exceeds the load at rest here.

@@ -16,7 +16,7 @@ use super::scenario::Scenario;
 use crate::config::{ConfigSpec, read_ron};
 use crate::control::{ComputedTorque, Controllers, TorqueGains};
 use crate::course::Profile;
-use crate::machine::{self, Machine, Zones};
+use crate::machine::{self, FeedforwardModel, Machine, Zones};
 use crate::motion::Motion;
 use crate::surroundings::{ActuatorFault, Surroundings};
 use crate::{store, suggest};
@@ -138,6 +138,8 @@ pub struct Setup {
     pub shape: Option<jbtg::Shape>,
     /// Whether the Lyapunov function is followed, which costs as much as the simulation.
     pub lyapunov: bool,
+    /// Whether the displacement of the tip by held joints is measured, which costs half as much.
+    pub tip: bool,
 }
 
 impl Setup {
@@ -148,7 +150,7 @@ impl Setup {
             Law::Adaptive | Law::Pd | Law::Pid => Knowledge::Nominal,
             Law::ComputedTorque | Law::ComputedTorqueExact => Knowledge::None,
         };
-        Self { law, knowledge, profile: Profile::JerkBounded, shape: None, lyapunov: true }
+        Self { law, knowledge, profile: Profile::JerkBounded, shape: None, lyapunov: true, tip: true }
     }
 }
 
@@ -157,8 +159,6 @@ impl Setup {
 pub struct Stage {
     /// The machine: simulated as it is, limits and safe zones as configured.
     pub machine: Arc<Machine>,
-    /// The crane as the controllers believe it to be.
-    believed: CraneModel,
     specs: Vec<JointSpec>,
     setup: Setup,
 }
@@ -186,14 +186,13 @@ impl Stage {
             }
             _ => Zones::FromTables,
         };
-        let believed = machine::load_model(&config)?;
         let truth = true_model(scenario, &config)?;
-        let nominal = match setup.knowledge {
-            Knowledge::None => None,
-            Knowledge::Nominal => Some(believed.clone()),
-            Knowledge::Exact => Some(truth.clone()),
+        let feedforward = match setup.knowledge {
+            Knowledge::None => FeedforwardModel::None,
+            Knowledge::Nominal => FeedforwardModel::Believed,
+            Knowledge::Exact => FeedforwardModel::Other(Box::new(truth.clone())),
         };
-        let machine = Machine::load_with(&config, zones)?.with_simulated(truth).with_nominal_model(nominal);
+        let machine = Machine::load_with(&config, zones)?.with_simulated(truth).with_feedforward(feedforward);
         for joint in scenario.effort_limits.keys() {
             index(&machine, "effort_limits", joint)?;
         }
@@ -211,7 +210,7 @@ impl Stage {
                 setup.law
             );
         }
-        Ok(Self { machine: Arc::new(machine), believed, specs, setup })
+        Ok(Self { machine: Arc::new(machine), specs, setup })
     }
 
     /// The gains of the law from the scenario's files.
@@ -262,7 +261,7 @@ impl Stage {
             LawGains::ComputedTorque(gains) => {
                 let model = match self.setup.law {
                     Law::ComputedTorqueExact => self.machine.model().clone(),
-                    _ => self.believed.clone(),
+                    _ => self.believed().clone(),
                 };
                 let limits = self.specs.iter().map(|spec| spec.effort_limits).collect();
                 let period = self.machine.rates().controller_period();
@@ -289,13 +288,14 @@ impl Stage {
             scenario.seed,
         );
         let controllers = self.controllers(gains)?;
-        Ok(Motion::with(Arc::clone(&self.machine), controllers, surroundings, self.setup.profile, true))
+        let Setup { profile, tip, .. } = self.setup;
+        Ok(Motion::with(Arc::clone(&self.machine), controllers, surroundings, profile, tip))
     }
 
     /// The crane as the controllers believe it to be: without payload.
     #[must_use]
     pub fn believed(&self) -> &CraneModel {
-        &self.believed
+        self.machine.believed_model()
     }
 
     /// The setup that it was loaded for.

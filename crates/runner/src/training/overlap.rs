@@ -97,7 +97,8 @@ fn learn(
         let outcome = match seen.ending {
             None => Outcome::Continues,
             Some(Ending::Reached) => Outcome::Terminal,
-            Some(Ending::TimeOut) => Outcome::Truncated,
+            // Neither is the task's doing: what would have followed counts as if the episode had gone on.
+            Some(Ending::TimeOut | Ending::Overload) => Outcome::Truncated,
         };
         agent.remember(&Transition {
             observation: &observation,

@@ -160,15 +160,16 @@ pub(super) fn accepted(stage: &Stage, best: &LawGains, tried: LawGains) -> Optio
     take.contains(&true).then(|| mix(best, &tried, &take))
 }
 
-/// Damping of every joint in its own units; none for a law that decouples the joints by its model.
+/// Damping of every one of `JOINTS` joints in its own units; none for a law that decouples the joints by its model.
 #[must_use]
-pub fn damping(gains: &LawGains) -> Option<Vec<f64>> {
-    match gains {
-        LawGains::Adaptive(gains) => Some(gains.iter().map(|gains| 0.5 * gains.values().k5).collect()),
-        LawGains::Pd(gains) => Some(gains.iter().map(|gains| gains.values().derivative).collect()),
-        LawGains::Pid(gains) => Some(gains.iter().map(|gains| gains.values().derivative).collect()),
-        LawGains::ComputedTorque(_) => None,
-    }
+pub fn damping<const JOINTS: usize>(gains: &LawGains) -> Option<[f64; JOINTS]> {
+    let damping: Vec<f64> = match gains {
+        LawGains::Adaptive(gains) => gains.iter().map(|gains| 0.5 * gains.values().k5).collect(),
+        LawGains::Pd(gains) => gains.iter().map(|gains| gains.values().derivative).collect(),
+        LawGains::Pid(gains) => gains.iter().map(|gains| gains.values().derivative).collect(),
+        LawGains::ComputedTorque(_) => return None,
+    };
+    damping.try_into().ok()
 }
 
 /// A law's gains as RON, by joint.

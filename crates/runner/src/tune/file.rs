@@ -12,24 +12,19 @@ use crate::track::setup::{Law, Setup, Stage};
 
 /// Tunes one law and writes its gain file, the one that the training scenarios name.
 ///
-/// A file whose gains are as good as those found is left as it is.
-///
 /// # Errors
 /// Those of [`tune`], or the file cannot be written.
 pub fn tune_to_file(tuning: Tuning) -> Result<String> {
     let tuned = tune(tuning)?;
+    let Tuning { law, family, .. } = tuning;
     let names = TRAINING.iter().find(|(family, _)| *family == tuning.family).map_or(&[][..], |set| set.1);
     let scenario = Scenario::read_training(names[0])?;
     let stage = Stage::load(&scenario, Setup::of(tuning.law))?;
     let path = gain_file(&scenario, tuning.law);
     let (shipped, first, last) = tuned.worst;
-    let found = format!("{} for {}: worst error {first:.3} to {last:.3}", tuning.law, tuning.family);
-    if let Some(shipped) = shipped
-        && shipped <= last
-    {
-        return Ok(format!("{found}; {} has {shipped:.3} and stays as it is\n", path.display()));
-    }
+    let before = shipped.map_or("refused".to_owned(), |shipped| format!("{shipped:.3}"));
     store::write_whole(&path, render(tuning, &stage, &tuned)?.as_bytes())?;
+    let found = format!("{law} for {family}: worst error {first:.3} to {last:.3}, before: {before}");
     Ok(format!("{found}; wrote {}\n", path.display()))
 }
 
