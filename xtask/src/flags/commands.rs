@@ -256,7 +256,7 @@ pub(crate) const COMMANDS: &[Command] = &[
             optional("out", "FILE", "write the table there as well, and its rows as JSON beside it"),
             switch("quiet", "no progress on standard error"),
         ],
-        example: "cargo xtask search --out docs/search.md",
+        example: "cargo xtask search --space assets/search/five-seeds.ron --out docs/five-seeds.md",
     },
     Command {
         name: "record",
