@@ -134,3 +134,14 @@ fn a_policy_that_is_not_there_or_not_whole_is_refused() {
         check_refusal(&eval("--policy broken.policy"), &["policy broken.policy", cause]);
     }
 }
+
+#[test]
+fn the_policies_in_the_box_reach_their_targets_within_all_limits() {
+    let project = Project::new();
+    for (stage, least) in [("purple", 0.9), ("yellow", 0.95), ("orange", 0.95)] {
+        let line = format!("eval --policy {stage} --stage {stage} --episodes 40 --seed 77");
+        let result: Value = serde_json::from_str(&check_success(&project.run(runner(), &line))).unwrap();
+        assert!(result["success_rate"].as_f64().unwrap() >= least, "{stage}: {result}");
+        assert_eq!(result["violations"], serde_json::json!({"reference": 0, "actual": 0}), "{stage}");
+    }
+}
