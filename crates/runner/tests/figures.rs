@@ -160,7 +160,7 @@ fn what_cannot_be_shown_is_refused() {
     );
     check_refusal(&runner(&project, "report --run c"), &["eval.json", "cargo xtask train"]);
     project.write("broken", "no checkpoint at all, but long enough to hold a header");
-    check_refusal(&runner(&project, "figures --policy broken"), &["broken", "no checkpoint of a run"]);
+    check_refusal(&runner(&project, "figures --policy broken"), &["broken", "this is no policy"]);
     project.write("runs/a/purple/metrics.jsonl", "{\"step\": 1}\n");
     check_refusal(&runner(&project, "figures --run a --episodes 1"), &["metrics.jsonl:1", "success_rate"]);
 }
