@@ -79,8 +79,8 @@ mod tests {
             assert!(help.contains(command.example));
             let words = command.example.strip_prefix("cargo xtask ").unwrap().split(' ').map(str::to_owned);
             // The example's file is relative to the root, where tests do not run.
-            let words =
-                words.map(|word| if word.ends_with(".json") { "Cargo.toml".to_owned() } else { word });
+            let is_input = |word: &str| word.ends_with(".json") || word.ends_with(".ron");
+            let words = words.map(|word| if is_input(&word) { "Cargo.toml".to_owned() } else { word });
             Invocation::parse(words.collect()).unwrap();
         }
     }

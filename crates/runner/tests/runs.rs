@@ -41,7 +41,7 @@ fn without_a_run_the_way_to_the_first_is_said() {
 #[test]
 fn a_mastered_stage_goes_on_with_the_next_and_the_last_with_nothing() {
     let project = Project::new();
-    let metrics = record(344, 0.95, "null") + &record(345, 0.97, "0.985");
+    let metrics = record(344, 0.95, "null") + &record(345, 0.97, "1.0");
     let closed = [
         ("metrics.jsonl", metrics.as_str()),
         ("certificate.json", r#"{"episodes":345}"#),
