@@ -1,11 +1,10 @@
 //! Figures and the report of a small real training: all of them there, sound, and refused where there is nothing to show.
-#![expect(clippy::unwrap_used, reason = "helpers of tests are tests too")]
 
 mod support;
 
 use std::process::Command;
 
-use runner::config::ConfigSpec;
+use support::learning::small_project;
 use support::{Project, check_refusal, check_success};
 
 /// Every figure of a run that trained purple alone.
@@ -22,22 +21,9 @@ const FIGURES: [&str; 10] = [
     "learning-purple",
 ];
 
-/// A project with two short trainings: networks of 16, episodes of 20 steps, updates from step 60 on.
+/// A project with two short trainings.
 fn trained_project() -> Project {
-    let project = Project::new();
-    let mut config = ConfigSpec::read(&project.path(runner::config::DEFAULT)).unwrap();
-    let learner = sac_burn::ConfigSpec {
-        hidden: vec![16, 16],
-        batch_size: 16,
-        random_steps: 60,
-        update_after: 60,
-        replay_capacity: 2_000,
-        ..config.learner.spec().clone()
-    };
-    config.learner = sac_burn::Config::try_from(learner).unwrap();
-    config.task.max_steps = 20;
-    config.curriculum.purple.confirm_episodes = 4;
-    project.write(runner::config::DEFAULT, config.to_ron().unwrap());
+    let project = small_project();
     for run in ["a", "b --seed 1"] {
         check_success(&runner(&project, &format!("train --quiet --stage purple --episodes 6 --run {run}")));
     }
