@@ -372,11 +372,12 @@ fn check_authority(pulse: &PulseLimits, period: f64, speed: f64) -> Result<(), P
         ("acceleration", a),
         ("inverse acceleration", 1.0 / a),
         ("velocity change", pulse.velocity_change),
+        ("velocity change squared", pulse.velocity_change * pulse.velocity_change),
         ("velocity change without a cruise", pulse.ramps_only),
         ("inverse velocity change without a cruise", 1.0 / pulse.ramps_only),
         ("ramp duration", shortest),
         ("shortest ramp cubed", (1e-6 * shortest) * (1e-6 * shortest) * (1e-6 * shortest)),
-        ("quintic coefficient", a / (shortest * shortest * shortest)),
+        ("derivative of a quintic", 1e13 * (a / (shortest * shortest * shortest))), // MAP's ramps shrink by 1e-6
         ("quintic coefficient of a small step", smallest_change / (longest * longest) / (longest * longest)),
         ("displacement", period * pulse.velocity_change),
         ("braking distance scale", period / pulse.velocity_change),

@@ -41,7 +41,8 @@ proptest! {
         match planner.ramp(p, v1, v2) {
             Ok(step) => prop_assert!(reachable.contains(v2) && step.end().velocity == v2),
             Err(RampError::NotFinite { .. }) => {
-                prop_assert!(!(p.is_finite() && v1.is_finite() && v2.is_finite()));
+                let end = p + planner.displacement(v1, v2);
+                prop_assert!(!(p.is_finite() && v1.is_finite() && v2.is_finite() && end.is_finite()));
             }
             Err(RampError::Unreachable { .. }) => prop_assert!(!reachable.contains(v2)),
         }
@@ -136,6 +137,21 @@ proptest! {
     }
 }
 
+/// 60·b₅ of its quintics is infinite, though every coefficient is finite.
+#[test]
+fn limits_whose_jerk_would_overflow_are_refused() {
+    let limits = Limits::try_from(LimitsSpec {
+        position: Interval::symmetric(1.0),
+        velocity: Interval::new(-1.0, 1.45e249),
+        acceleration: Interval::new(-1.0, 3.59e120),
+        jerk: Interval::new(-1.85e192, 4.09e295),
+    })
+    .unwrap();
+    let spec = PlannerSpec { limits, shape: Shape::Smoothstep, timing: Timing::Stretched, period: 3.8e-57 };
+    let error = Planner::try_from(spec).unwrap_err();
+    assert!(matches!(error, PlannerError::OutOfScale { .. }), "{error}");
+}
+
 #[test]
 fn numbers_that_are_no_limits_are_refused() {
     let good = LimitsSpec {
@@ -201,15 +217,15 @@ fn a_final_position_that_overflows_is_refused() {
     let limits = Limits::try_from(LimitsSpec {
         position: Interval::new(0.0, 1.0),
         velocity: Interval::symmetric(1e300),
-        acceleration: Interval::symmetric(1e300),
-        jerk: Interval::symmetric(1e301),
+        acceleration: Interval::symmetric(1e100),
+        jerk: Interval::symmetric(1e101),
     })
     .unwrap();
     let spec = PlannerSpec { limits, shape: Shape::Smoothstep, timing: Timing::Stretched, period: 10.0 };
     let planner = Planner::try_from(spec).unwrap();
-    let error = planner.ramp(f64::MAX, 9e299, 1e300).unwrap_err();
+    let error = planner.ramp(f64::MAX, 1e300, 1e300).unwrap_err();
     assert!(matches!(error, RampError::NotFinite { name: "final position", .. }), "{error}");
-    assert!(planner.ramp_saturated(f64::MAX, 9e299, 1e300).is_err());
+    assert!(planner.ramp_saturated(f64::MAX, 1e300, 1e300).is_err());
 }
 
 #[test]
