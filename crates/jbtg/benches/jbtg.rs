@@ -4,7 +4,9 @@
 use std::hint::black_box;
 
 use criterion::{BenchmarkGroup, Criterion, criterion_group, criterion_main, measurement::WallTime};
-use jbtg::{Interval, Limits, LimitsSpec, MAX_SEGMENTS, Planner, PlannerSpec, Shape, Timing, Trajectory};
+use jbtg::{
+    Direction, Interval, Limits, LimitsSpec, MAX_SEGMENTS, Planner, PlannerSpec, Shape, Timing, Trajectory,
+};
 
 /// The paper's telescope, with limits that differ between the directions.
 fn planner(shape: Shape, timing: Timing) -> Planner {
@@ -76,6 +78,28 @@ fn ramp(c: &mut Criterion) {
     }
 }
 
+/// Detours of ten periods of the telescope, whose jerk bounds differ: `farthest` iterates for the one direction alone.
+fn detours(c: &mut Criterion) {
+    let limits = *planner(Shape::Smoothstep, Timing::Stretched).limits();
+    let spec = PlannerSpec { limits, shape: Shape::Smoothstep, timing: Timing::Stretched, period: 0.5 };
+    let planner = Planner::try_from(spec).expect("a period of many ramps");
+    let steps = steps(&planner, WHOLE);
+    for (query, farthest) in [("waypoint", false), ("farthest", true)] {
+        let mut group = c.benchmark_group(query);
+        for (case, direction) in
+            [("increasing", Direction::Increasing), ("decreasing", Direction::Decreasing)]
+        {
+            over(&mut group, case, &steps, |&(p, v1, v2)| {
+                if farthest {
+                    planner.farthest(p, v1, v2, direction)
+                } else {
+                    planner.waypoint_towards(p, v1, v2, direction)
+                }
+            });
+        }
+    }
+}
+
 fn state_at(c: &mut Criterion) {
     let mut group = c.benchmark_group("state_at");
     let planner = planner(Shape::Smoothstep, Timing::Fastest);
@@ -122,5 +146,5 @@ fn queries(c: &mut Criterion) {
     }
 }
 
-criterion_group!(benches, ramp, state_at, extrema, queries);
+criterion_group!(benches, ramp, detours, state_at, extrema, queries);
 criterion_main!(benches);

@@ -121,6 +121,16 @@ impl Scaling {
         self.spec.offset.is_empty()
     }
 
+    /// True if both bring every feature to the same number, but for rounding.
+    #[must_use]
+    pub fn agrees_with(&self, other: &Self) -> bool {
+        let ScalingSpec { offset, scale } = &self.spec;
+        let same = |a: &f64, b: &f64, unit: &f64| (a - b).abs() <= 1e-9 * unit;
+        self.len() == other.len()
+            && offset.iter().zip(&other.spec.offset).zip(scale).all(|((a, b), unit)| same(a, b, unit))
+            && scale.iter().zip(&other.spec.scale).all(|(a, b)| same(a, b, a))
+    }
+
     /// The policy's input. Shape: `[len]`.
     ///
     /// The one place where the project's f64 becomes the learner's f32.
@@ -160,6 +170,18 @@ mod tests {
         scaling.apply(&features, &mut input);
         let expected: Vec<f32> = (0..12).map(|index| index as f32 / 2.0).collect();
         assert_eq!(input.as_slice(), expected);
+    }
+
+    #[test]
+    fn scalings_agree_up_to_rounding() {
+        let of = |offset, scale| {
+            Scaling::try_from(ScalingSpec { offset: vec![offset], scale: vec![scale] }).unwrap()
+        };
+        let scaling = of(0.0, 2.0);
+        assert!(scaling.agrees_with(&of(1e-10, 2.0 + 1e-10)));
+        assert!(!scaling.agrees_with(&of(1e-6, 2.0)) && !scaling.agrees_with(&of(0.0, 2.0 + 1e-6)));
+        let longer = ScalingSpec { offset: vec![0.0; 2], scale: vec![2.0; 2] };
+        assert!(!scaling.agrees_with(&Scaling::try_from(longer).unwrap()));
     }
 
     #[test]

@@ -153,6 +153,7 @@ impl Training {
             )
         })?;
         let machine = Arc::new(Machine::load(&config)?);
+        same_crane(&path, &header.scaling, &machine.scaling())?;
         let recorder = Recorder::reopen(&folder, header.metrics_length, header.events_length)?;
         Ok(Self {
             environment: Environment::new(Arc::clone(&machine), false),
@@ -433,12 +434,19 @@ fn inherit(path: &Path, config: &ConfigSpec, scaling: &Scaling) -> Result<Agent>
     let (header, agent) = checkpoint::read(path)?;
     same_configuration(&header.config, config)
         .with_context(|| format!("{} was trained with another configuration", path.display()))?;
+    same_crane(path, &header.scaling, scaling)?;
+    Ok(agent)
+}
+
+/// Refuses a crane whose limits changed since: the learner knows its state by its share of them.
+fn same_crane(path: &Path, trained: &Scaling, present: &Scaling) -> Result<()> {
     ensure!(
-        header.scaling == *scaling,
-        "{} scales its observations differently: the limits of the crane changed since; train its stage again",
+        trained.agrees_with(present),
+        "{} scales its observations differently: the limits of the crane changed since; train its stage again under \
+         another name, or restore the limits",
         path.display()
     );
-    Ok(agent)
+    Ok(())
 }
 
 /// Refuses another configuration and says which fields differ.

@@ -265,6 +265,21 @@ fn a_run_is_not_resumed_with_another_configuration_or_seed() {
 }
 
 #[test]
+fn a_run_is_not_resumed_with_a_crane_of_other_limits() {
+    let project = small_project();
+    check_success(&train(&project, "--stage purple --run a --episodes 4"));
+    let crane = project.text("assets/hiab/hiab.urdf");
+    let limits = "effort=\"95500\"";
+    assert!(crane.contains(limits), "lift's limits are written otherwise");
+    project.write("assets/hiab/hiab.urdf", crane.replace(limits, "effort=\"95400\""));
+    for next in ["--stage purple --run a --resume --episodes 5", "--stage yellow --run a"] {
+        check_refusal(&train(&project, next), &["runs/a/purple", "the limits of the crane changed"]);
+    }
+    project.write("assets/hiab/hiab.urdf", crane);
+    check_success(&train(&project, "--stage purple --run a --resume --episodes 5"));
+}
+
+#[test]
 fn what_a_run_was_begun_with_may_be_given_again_and_goes_on_in_the_next_stage() {
     let project = small_project();
     project

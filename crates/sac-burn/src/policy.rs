@@ -173,15 +173,9 @@ impl Policy {
         }
         frame.expect_numbers(4u64.saturating_mul(count(&widths)))?;
         let mut policy = Self::zero(widths);
-        for layer in &mut policy.layers {
-            frame.numbers(&mut layer.weights)?;
-            frame.numbers(&mut layer.bias)?;
-        }
+        policy.visit_mut(|values| frame.numbers(values))?;
         frame.finish()?;
-        for layer in &policy.layers {
-            check_finite("policy", &layer.weights)?;
-            check_finite("policy", &layer.bias)?;
-        }
+        policy.visit_mut(|values| check_finite("policy", values))?;
         match input.len() {
             0 => Ok(policy),
             n => Err(CheckpointError::Inconsistent {
