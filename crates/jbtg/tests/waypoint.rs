@@ -139,7 +139,9 @@ proptest! {
             let beyond = peak + sign * excess * limits.width();
             let time = least_time(&planner, beyond - v1) + least_time(&planner, v2 - beyond);
             prop_assert!(is_limit || time > planner.period(), "{beyond:e} beyond {peak:e} takes {time:e} s");
-            prop_assert!(is_limit || cruise <= 1e-3 * planner.period(), "{cruise:e} s at {peak:e}");
+            // The peak is rounded to what its magnitude allows, and the smallest changes take longest for what they are.
+            let rounding = least_time(&planner, 8.0 * f64::EPSILON * peak.abs());
+            prop_assert!(is_limit || cruise <= 1e-3 * planner.period() + rounding, "{cruise:e} s at {peak:e}");
         }
     }
 

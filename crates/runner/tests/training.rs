@@ -268,14 +268,12 @@ fn a_run_is_not_resumed_with_another_configuration_or_seed() {
 fn a_run_is_not_resumed_with_a_crane_of_other_limits() {
     let project = small_project();
     check_success(&train(&project, "--stage purple --run a --episodes 4"));
-    let crane = project.text("assets/hiab/hiab.urdf");
-    let limits = "effort=\"95500\"";
-    assert!(crane.contains(limits), "lift's limits are written otherwise");
-    project.write("assets/hiab/hiab.urdf", crane.replace(limits, "effort=\"95400\""));
+    let (old, new) = ("effort: 95500.0", "effort: 95400.0");
+    project.edit("assets/hiab/hiab.ron", old, new);
     for next in ["--stage purple --run a --resume --episodes 5", "--stage yellow --run a"] {
         check_refusal(&train(&project, next), &["runs/a/purple", "the limits of the crane changed"]);
     }
-    project.write("assets/hiab/hiab.urdf", crane);
+    project.edit("assets/hiab/hiab.ron", new, old);
     check_success(&train(&project, "--stage purple --run a --resume --episodes 5"));
 }
 
