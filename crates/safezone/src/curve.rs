@@ -73,6 +73,13 @@ impl<'a> Curve<'a> {
         let first = if steps > 0 { at(1) } else { f64::INFINITY };
         let second = if steps > 1 { at(2) - first } else { growth_per_step };
         let vertex = second / growth_per_step - 0.5;
+        // A real table's second step is the longer by more than a half; a period that is none gives anything.
+        if !(growth_per_step.is_normal() && growth_per_step > 0.0) {
+            return Err(0);
+        }
+        if !(vertex >= 0.0) {
+            return Err(2 * subdivisions);
+        }
         let parabola =
             Parabola { first, vertex, vertex_squared: vertex * vertex, growth: 2.0 / growth_per_step };
         for step in 2..=steps {

@@ -125,3 +125,22 @@ proptest! {
         prop_assert!(SafeZone::new(planner, table).is_err(), "a hostile table was taken");
     }
 }
+
+/// A negative period made a parabola that leads back, and a lookup that was a step off.
+#[test]
+fn a_table_of_no_period_is_refused() {
+    let one = Interval::symmetric(1.0);
+    let limits = LimitsSpec { position: one, velocity: one, acceleration: one, jerk: one };
+    let limits = Limits::try_from(limits).expect("limits around zero");
+    let (shape, timing) = (jbtg::Shape::Smoothstep, jbtg::Timing::Stretched);
+    let spec = PlannerSpec { limits, shape, timing, period: -5.5e65 };
+    let knots = [(0.0, 0.0), (0.5, 1.0), (2.0, 2.0)].map(|(distance, velocity)| Knot { distance, velocity });
+    let mut parts =
+        TableParts { built_from: spec, subdivisions: 1, upper: &knots, lower: &knots[..2], hash: 0 };
+    let Err(TableError::Corrupted { found, .. }) = BrakingTable::try_from(parts) else {
+        panic!("a hash of 0")
+    };
+    parts.hash = found;
+    let refused = BrakingTable::try_from(parts);
+    assert_eq!(refused, Err(TableError::Malformed { side: Side::Upper, index: 0 }));
+}
