@@ -21,8 +21,11 @@ use crate::store;
 
 /// The file's kind. A version that changes the header adds its step here, and a run of the version before to
 /// `tests/formats`.
-pub const KIND: Kind =
-    Kind { magic: *b"JBTGRUN\0", name: "checkpoint of a run", steps: &[goals_by_stage_and_averaged_policy] };
+pub const KIND: Kind = Kind {
+    magic: *b"JBTGRUN\0",
+    name: "checkpoint of a run",
+    steps: &[goals_by_stage_and_averaged_policy, noiseless_episodes],
+};
 
 /// Version 1 had one goal for all stages, without a limit of steps, and its policy was the actor.
 fn goals_by_stage_and_averaged_policy(header: &mut Value) -> Result<()> {
@@ -36,6 +39,14 @@ fn goals_by_stage_and_averaged_policy(header: &mut Value) -> Result<()> {
     config.insert("curriculum".into(), curriculum.into());
     let learner = config.get_mut("learner").and_then(Value::as_object_mut);
     learner.context("config.learner is missing")?.insert("policy_share".into(), 1.0.into());
+    Ok(())
+}
+
+/// Version 2 explored in every episode.
+pub fn noiseless_episodes(header: &mut Value) -> Result<()> {
+    let config = header.get_mut("config").and_then(Value::as_object_mut).context("config is missing")?;
+    let curriculum = config.get_mut("curriculum").and_then(Value::as_object_mut);
+    curriculum.context("config.curriculum is missing")?.insert("noiseless_every".into(), 0.into());
     Ok(())
 }
 

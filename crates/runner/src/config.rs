@@ -163,6 +163,10 @@ pub struct Reward {
 pub struct Curriculum {
     /// Environment steps between two checkpoints.
     pub checkpoint_every: u64,
+    /// Every n-th episode is played without exploration, as an evaluation is, and learnt from like any other; 0 for
+    /// none. Exploration carries the tip over places at which the policy alone would rest, so they are not seen
+    /// otherwise.
+    pub noiseless_every: u64,
     /// The first stage.
     pub purple: Goal,
     /// The second stage.

@@ -66,6 +66,8 @@ pub struct Candidate {
     pub target_entropy: Option<f64>,
     /// Steps of random actions, and transitions before the first update.
     pub random_steps: Option<u64>,
+    /// Every n-th episode without exploration.
+    pub noiseless_every: Option<u64>,
     /// Cost of effort.
     pub effort: Option<f64>,
     /// Cost of distance.
@@ -118,6 +120,7 @@ impl Candidate {
         if self.target_entropy.is_some() {
             learner.target_entropy = self.target_entropy;
         }
+        set(&mut config.curriculum.noiseless_every, self.noiseless_every.as_ref());
         set(&mut config.reward.effort, self.effort.as_ref());
         set(&mut config.reward.distance, self.distance.as_ref());
         set(&mut config.reward.speed, self.speed.as_ref());

@@ -22,7 +22,8 @@ use crate::stage::Stage;
 use crate::{store, training};
 
 /// The file's kind. A version that changes the header adds its step here.
-pub const KIND: Kind = Kind { magic: *b"JBTGPOL\0", name: "policy", steps: &[] };
+pub const KIND: Kind =
+    Kind { magic: *b"JBTGPOL\0", name: "policy", steps: &[checkpoint::noiseless_episodes] };
 
 /// Where the policies are that come with the project: `purple` is `purple.policy` there.
 pub const FOLDER: &str = "assets/policies";

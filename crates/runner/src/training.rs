@@ -12,7 +12,7 @@ use anyhow::{Context, Result, ensure};
 use sac_burn::{Agent, Policy};
 
 pub use self::finished::Finished;
-use self::overlap::Played;
+use self::overlap::{Acting, Played};
 use self::record::{EpisodeRecord, Means, Recorder};
 use crate::certificate::{Certificate, Part};
 use crate::checkpoint::{self, Header};
@@ -279,7 +279,8 @@ impl Training {
         let mut stream = Stream::of_episode(self.config.seed, Purpose::Training, self.stage, number);
         let episode = self.environment.draw(self.machine.regions().of(self.stage), &mut stream)?;
         self.environment.start(&episode)?;
-        let played = overlap::play(&mut self.environment, &mut self.agent, &self.scaling)
+        let acting = self.acting(number);
+        let played = overlap::play(&mut self.environment, &mut self.agent, &self.scaling, acting)
             .with_context(|| format!("episode {number}"))?;
         let Played { ending, return_, losses, .. } = played;
         let steps = u64::from(self.environment.steps());
@@ -309,6 +310,15 @@ impl Training {
             losses: losses.means(),
         })?;
         Ok(confirmed)
+    }
+
+    /// Whether an episode explores.
+    fn acting(&self, episode: u64) -> Acting {
+        match self.config.curriculum.noiseless_every {
+            0 => Acting::Exploring,
+            every if (episode + 1).is_multiple_of(every) => Acting::Noiseless,
+            _ => Acting::Exploring,
+        }
     }
 
     /// Confirms the stage by a deterministic evaluation if its window of successes asks for one; gives the success rate.

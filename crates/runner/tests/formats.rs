@@ -1,7 +1,7 @@
 //! Checkpoints of earlier versions of the format are read, and their training goes on.
 //!
 //! `formats/version-N` is a run of purple that the program of that version left after seven episodes: hidden layer of 4,
-//! batches of 4, episodes of 8 steps, a memory of 40 transitions, seed 7.
+//! batches of 4, episodes of 8 steps, a memory of 40 transitions, seed 7. `formats/policy-N.policy` is such a run's policy.
 #![expect(clippy::unwrap_used, reason = "helpers of tests are tests too")]
 
 mod support;
@@ -11,11 +11,15 @@ use std::path::{Path, PathBuf};
 
 use runner::checkpoint;
 use runner::stage::Stage;
+use runner::trained::{self, Trained};
 use support::learning::{runner, train};
 use support::{Project, check_success, workspace_root};
 
 /// Every version but the present one.
-const VERSIONS: [u32; 1] = [1];
+const VERSIONS: [u32; 2] = [1, 2];
+
+/// Every version of a policy's file but the present one.
+const POLICIES: [u32; 1] = [1];
 
 fn fixture(version: u32) -> PathBuf {
     workspace_root().join(format!("crates/runner/tests/formats/version-{version}"))
@@ -46,12 +50,30 @@ fn every_earlier_version_is_there_and_none_is_the_present_one() {
 }
 
 #[test]
+fn a_policy_of_an_earlier_version_is_read_and_played() {
+    assert!(POLICIES.into_iter().eq(1..trained::KIND.version()), "add a policy of each earlier version");
+    for version in POLICIES {
+        let file = workspace_root().join(format!("crates/runner/tests/formats/policy-{version}.policy"));
+        assert_eq!(version_of(&file), version);
+        let read = Trained::read(&file).unwrap();
+        let header = read.header.as_ref().unwrap();
+        assert_eq!((read.stage, header.seed, header.steps), (Stage::Purple, 7, 56));
+        let project = Project::new();
+        project.write("then.ron", read.config.to_ron().unwrap());
+        check_success(&project.kinematics("tables --config then.ron"));
+        check_success(&project.run(runner(), &format!("play --policy {}", file.display())));
+    }
+}
+
+#[test]
 fn a_checkpoint_of_an_earlier_version_holds_what_it_held() {
     for version in VERSIONS {
         let (header, agent) = checkpoint::read(&fixture(version).join("latest")).unwrap();
         assert_eq!((header.stage, header.config.seed), (Stage::Purple, 7));
         assert_eq!((header.mastery.episodes, header.steps), (7, 56));
-        assert_eq!((agent.steps(), agent.updates(), agent.replay_len()), (56, 45, 40));
+        // Version 1 updated after a step, later ones beside the next.
+        let updates = if version == 1 { 45 } else { 44 };
+        assert_eq!((agent.steps(), agent.updates(), agent.replay_len()), (56, updates, 40));
         assert_eq!(header.config.learner.spec().hidden, [4]);
         assert_eq!(agent.config(), &header.config.learner, "both halves were brought up to date alike");
         let metrics = fs::metadata(fixture(version).join("metrics.jsonl")).unwrap().len();

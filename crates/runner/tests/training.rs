@@ -80,6 +80,24 @@ fn a_resumed_training_equals_one_that_never_stopped() {
 }
 
 #[test]
+fn the_episode_that_is_to_be_without_exploration_is_the_first_that_differs() {
+    let project = small_project();
+    for (run, every) in [("never", 0), ("sixth", 6)] {
+        let mut config = ConfigSpec::read(&project.path(runner::config::DEFAULT)).unwrap();
+        config.curriculum.noiseless_every = every;
+        project.write("this.ron", config.to_ron().unwrap());
+        check_success(&train(
+            &project,
+            &format!("--stage purple --run {run} --episodes 7 --config this.ron"),
+        ));
+    }
+    let [never, sixth] =
+        ["never", "sixth"].map(|run| project.text(&format!("runs/{run}/purple/metrics.jsonl")));
+    let differing = never.lines().zip(sixth.lines()).position(|(never, sixth)| never != sixth);
+    assert_eq!(differing, Some(5));
+}
+
+#[test]
 fn a_killed_training_resumes_from_its_last_checkpoint() {
     let project = small_project();
     let episodes = 5 * EPISODES;

@@ -36,11 +36,25 @@ struct Seen {
     seconds: f64,
 }
 
+/// How an episode's actions are chosen.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Acting {
+    /// The actor draws them.
+    Exploring,
+    /// The policy's mean, as in an evaluation; drawn all the same while the learner warms up.
+    Noiseless,
+}
+
 /// Plays the episode that `environment` has begun, and learns from it.
 ///
 /// # Errors
 /// The simulation left its range, or learning diverged.
-pub(super) fn play(environment: &mut Environment, agent: &mut Agent, scaling: &Scaling) -> Result<Played> {
+pub(super) fn play(
+    environment: &mut Environment,
+    agent: &mut Agent,
+    scaling: &Scaling,
+    acting: Acting,
+) -> Result<Played> {
     let mut observation = vec![0.0; scaling.len()];
     environment.observe(scaling, &mut observation);
     std::thread::scope(|scope| {
@@ -53,7 +67,7 @@ pub(super) fn play(environment: &mut Environment, agent: &mut Agent, scaling: &S
                 }
             }
         });
-        learn(agent, observation, &to_environment, &answers)
+        learn(agent, observation, acting, &to_environment, &answers)
     })
 }
 
@@ -69,6 +83,7 @@ fn step(environment: &mut Environment, scaling: &Scaling, action: &[f32]) -> Res
 fn learn(
     agent: &mut Agent,
     mut observation: Vec<f32>,
+    acting: Acting,
     to_environment: &SyncSender<Vec<f32>>,
     answers: &Receiver<Result<Seen>>,
 ) -> Result<Played> {
@@ -84,7 +99,11 @@ fn learn(
     loop {
         let begun = now();
         let mut action = vec![0.0; agent.action_dim()];
-        agent.act(&observation, &mut action);
+        if acting == Acting::Noiseless && agent.updates() > 0 {
+            agent.act_deterministic(&observation, &mut action);
+        } else {
+            agent.act(&observation, &mut action);
+        }
         to_environment.send(action.clone()).expect(GONE);
         for _ in 0..agent.config().spec().updates_per_step {
             if let Some(update) = agent.update() {
