@@ -8,7 +8,7 @@ use crate::model::CraneModel;
 
 impl CraneModel {
     /// Writes the Coriolis matrix C(y, ẏ) to `matrix` [N·m·s/rad, N·s/m and mixed]: n × n, row by row, as of the last
-    /// `update_dynamics` or dynamics call.
+    /// `update_dynamics` or `forward_dynamics`.
     ///
     /// Of all matrices with C·ẏ = bias − gravity effort it is the one of the Christoffel symbols, so Ṁ = C + Cᵀ and
     /// C(y, u)·w = C(y, w)·u. Costs about n times what the bias does; not for control loops.
@@ -23,16 +23,16 @@ impl CraneModel {
         let n = self.actuators.len();
         check_length("matrix", matrix, n * n)?;
         matrix.fill(0.0);
-        for (body, mass) in self.masses.iter().enumerate() {
-            let I_W = mass.in_world(&data.X_WB[body]);
-            let V_WB = &data.twist[body];
+        for (body, inertia) in self.inertias.iter().enumerate() {
+            let I_W = inertia.in_world(&data.X_WB[body]);
+            let V_WB = &self.twist(data, body);
             let momentum = I_W.times(V_WB);
             for j in self.ancestors(body) {
-                let (S_j, slope) = (&data.subspace[j], data.slope[j]);
+                let (S_j, slope) = (&self.subspace(data, j), data.slope[j]);
                 let k_j = self.driven_by[j];
                 // The column of J̇: the axis is carried along by its body, and the slope changes.
                 let slope_rate = data.curvature[j] * data.velocity[k_j];
-                let S_dot = data.twist[j].cross_motion(S_j).scaled(slope).plus(&S_j.scaled(slope_rate));
+                let S_dot = self.twist(data, j).cross_motion(S_j).scaled(slope).plus(&S_j.scaled(slope_rate));
                 let s = S_j.scaled(slope);
                 let force = I_W
                     .times(&S_dot)
@@ -40,7 +40,7 @@ impl CraneModel {
                     .plus(&s.cross_force(&momentum).scaled(0.5))
                     .plus(&I_W.times(&V_WB.cross_motion(&s)).scaled(-0.5));
                 for i in self.ancestors(body) {
-                    matrix[self.driven_by[i] * n + k_j] += data.slope[i] * data.subspace[i].dot(&force);
+                    matrix[self.driven_by[i] * n + k_j] += data.slope[i] * self.subspace(data, i).dot(&force);
                 }
             }
         }
@@ -48,7 +48,7 @@ impl CraneModel {
     }
 
     /// `body` and all that carry it, down to the ground.
-    fn ancestors(&self, body: usize) -> impl Iterator<Item = usize> {
+    pub(crate) fn ancestors(&self, body: usize) -> impl Iterator<Item = usize> {
         std::iter::successors(Some(body), |body| self.tree.joints[*body].parent)
     }
 }

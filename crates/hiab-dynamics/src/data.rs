@@ -1,12 +1,15 @@
 //! The workspace: everything that changes from state to state, allocated once.
 #![expect(non_snake_case, reason = "monogram frames")]
 
-use crate::spatial::{Force, Inertia, Motion, Transform};
+use nalgebra::Vector3;
+
+use crate::spatial::{Force, Inertia, Transform, ZERO3};
+use crate::turn::Placement;
 
 /// Workspace of one [`CraneModel`](crate::CraneModel), made by its `new_data`.
 ///
-/// Getters give the results of the last `update_*` or dynamics call. Use it with the model that made it: another
-/// model of other size makes those calls panic.
+/// Getters give the results of the last `update_*` or `forward_dynamics`; `inverse_dynamics` brings only the tree joints
+/// to its state. Use it with the model that made it: another model of other size makes those calls panic.
 #[derive(Clone, Debug)]
 pub struct Data {
     // Actuator coordinates.
@@ -25,17 +28,38 @@ pub struct Data {
     pub(crate) slope: Vec<f64>,
     /// Second derivative of a tree position by its actuator's position.
     pub(crate) curvature: Vec<f64>,
-    // Bodies, in the world.
+    // Bodies.
     pub(crate) X_WB: Vec<Transform>,
-    /// Twist per unit velocity of the body's own joint.
-    pub(crate) subspace: Vec<Motion>,
-    pub(crate) twist: Vec<Motion>,
-    /// Acceleration at ÿ = 0, less gravity.
-    pub(crate) acceleration: Vec<Motion>,
-    pub(crate) composite: Vec<Inertia>,
-    pub(crate) wrench: Vec<Force>,
+    pub(crate) bodies: Vec<Body>,
     // Integration.
     pub(crate) stages: Stages,
+}
+
+/// A body in motion, in its own frame.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Body {
+    /// Where it is in its parent.
+    pub(crate) placement: Placement,
+    pub(crate) angular_velocity: Vector3<f64>,
+    /// At ÿ = 0, as the next one; after `inverse_dynamics` both at the ÿ that it was given.
+    pub(crate) angular_acceleration: Vector3<f64>,
+    /// Of the body's origin, less gravity.
+    pub(crate) acceleration: Vector3<f64>,
+    /// Wrench that moves it and all that it carries.
+    pub(crate) wrench: Force,
+    /// Inertia of it and all that it carries.
+    pub(crate) composite: Inertia,
+}
+
+impl Body {
+    const AT_REST: Self = Self {
+        placement: Placement::IDENTITY,
+        angular_velocity: ZERO3,
+        angular_acceleration: ZERO3,
+        acceleration: ZERO3,
+        wrench: Force::ZERO,
+        composite: Inertia::ZERO,
+    };
 }
 
 /// Intermediate states of one integration step. The empty default stands in while a step has them on loan.
@@ -66,11 +90,7 @@ impl Data {
             slope: vec![1.0; bodies],
             curvature: tree(),
             X_WB: vec![Transform::identity(); bodies],
-            subspace: vec![Motion::ZERO; bodies],
-            twist: vec![Motion::ZERO; bodies],
-            acceleration: vec![Motion::ZERO; bodies],
-            composite: vec![Inertia::ZERO; bodies],
-            wrench: vec![Force::ZERO; bodies],
+            bodies: vec![Body::AT_REST; bodies],
             stages: Stages {
                 position: n(),
                 velocity: n(),
@@ -83,14 +103,14 @@ impl Data {
 
     /// Mass matrix M(y), armature included [kg·m², kg·m or kg]: n × n, row by row.
     ///
-    /// As of the last `update_dynamics`, `forward_dynamics` or `inverse_dynamics`.
+    /// As of the last `update_dynamics` or `forward_dynamics`.
     pub fn mass_matrix(&self) -> &[f64] {
         &self.mass_matrix
     }
 
     /// Coriolis, centrifugal and gravity effort [N·m or N], without friction: what holds the state at ÿ = 0.
     ///
-    /// As of the last `update_dynamics`, `forward_dynamics` or `inverse_dynamics`.
+    /// As of the last `update_dynamics` or `forward_dynamics`.
     pub fn bias(&self) -> &[f64] {
         &self.bias
     }

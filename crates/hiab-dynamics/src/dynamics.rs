@@ -34,48 +34,64 @@ impl CraneModel {
         velocity: &[f64],
     ) -> Result<(), DynamicsError> {
         self.update_kinematics(data, position, velocity)?;
-        self.sum_bodies(data);
+        let mut bias = std::mem::take(&mut data.bias);
+        self.sum_wrenches(data, &mut bias);
+        data.bias = bias;
+        self.sum_inertias(data);
         Ok(())
     }
 
-    /// One pass from the tips inwards.
-    fn sum_bodies(&self, data: &mut Data) {
+    /// Writes the effort Gᵀτ of all actuators to `effort`, with τ what moves the bodies as they move: one pass from the
+    /// tips inwards.
+    fn sum_wrenches(&self, data: &mut Data, effort: &mut [f64]) {
+        for (body, inertia) in data.bodies.iter_mut().zip(&self.inertias) {
+            body.wrench =
+                inertia.wrench_at(&body.angular_velocity, &body.angular_acceleration, &body.acceleration);
+        }
+        effort.fill(0.0);
+        for (i, joint) in self.tree.joints.iter().enumerate().rev() {
+            let body = &data.bodies[i];
+            effort[self.driven_by[i]] += data.slope[i] * joint.effort(&body.wrench);
+            if let Some(p) = joint.parent {
+                let carried = body.placement.wrench(&body.wrench);
+                data.bodies[p].wrench = data.bodies[p].wrench.plus(&carried);
+            }
+        }
+    }
+
+    /// Mass matrix and gravity effort, from the tips inwards.
+    fn sum_inertias(&self, data: &mut Data) {
         let n = self.actuators.len();
         data.mass_matrix.fill(0.0);
-        data.bias.fill(0.0);
         data.gravity_effort.fill(0.0);
-        for i in 0..self.masses.len() {
-            let I_W = self.masses[i].in_world(&data.X_WB[i]);
-            let V_WB = &data.twist[i];
-            let inertial = I_W.times(&data.acceleration[i]);
-            data.wrench[i] = inertial.plus(&V_WB.cross_force(&I_W.times(V_WB)));
-            data.composite[i] = I_W;
+        for (body, inertia) in data.bodies.iter_mut().zip(&self.inertias) {
+            body.composite = *inertia;
         }
-        for i in (0..self.masses.len()).rev() {
-            let (S_i, k_i, slope_i) = (data.subspace[i], self.driven_by[i], data.slope[i]);
-            let composite = data.composite[i];
-            let F_i = data.wrench[i];
-            data.bias[k_i] += slope_i * S_i.dot(&F_i);
+        for (i, joint) in self.tree.joints.iter().enumerate().rev() {
+            let (k_i, slope_i) = (self.driven_by[i], data.slope[i]);
+            let composite = data.bodies[i].composite;
+            let weight_per_mass = -data.X_WB[i].rotation.tr_mul(&self.gravity);
             let weight = Force {
-                moment: composite.first_moment.cross(&-self.gravity),
-                force: self.gravity * -composite.mass,
+                moment: composite.first_moment.cross(&weight_per_mass),
+                force: weight_per_mass * composite.mass,
             };
-            data.gravity_effort[k_i] += slope_i * S_i.dot(&weight);
+            data.gravity_effort[k_i] += slope_i * joint.effort(&weight);
 
             // Column i of H up to the ground, folded into M at once.
-            let momentum = composite.times(&S_i);
-            data.mass_matrix[k_i * n + k_i] += slope_i * slope_i * S_i.dot(&momentum);
-            let mut ancestor = self.tree.joints[i].parent;
-            while let Some(j) = ancestor {
+            let mut momentum = composite.times(&joint.subspace());
+            data.mass_matrix[k_i * n + k_i] += slope_i * slope_i * joint.effort(&momentum);
+            let mut body = i;
+            while let Some(j) = self.tree.joints[body].parent {
+                momentum = data.bodies[body].placement.wrench(&momentum);
                 let k_j = self.driven_by[j];
-                let value = slope_i * data.slope[j] * data.subspace[j].dot(&momentum);
+                let value = slope_i * data.slope[j] * self.tree.joints[j].effort(&momentum);
                 data.mass_matrix[k_i * n + k_j] += value;
                 data.mass_matrix[k_j * n + k_i] += value;
-                ancestor = self.tree.joints[j].parent;
+                body = j;
             }
-            if let Some(p) = self.tree.joints[i].parent {
-                data.composite[p] = data.composite[p].plus(&composite);
-                data.wrench[p] = data.wrench[p].plus(&F_i);
+            if let Some(p) = joint.parent {
+                let carried = data.bodies[i].placement.inertia(&composite);
+                data.bodies[p].composite = data.bodies[p].composite.plus(&carried);
             }
         }
         for (k, armature) in self.armature.iter().enumerate() {
@@ -118,6 +134,9 @@ impl CraneModel {
 
     /// Effort that causes `acceleration`, written to `effort` [N·m or N]: M ÿ + bias + friction − Jᵀw.
     ///
+    /// One Newton-Euler pass whose joint accelerations are Gÿ + ġ; M itself is not needed. Of the getters of `data`
+    /// only those of tree joints are of this state then; poses, tip and matrices want an update of their own.
+    ///
     /// # Errors
     /// Those of [`update_kinematics`](Self::update_kinematics).
     pub fn inverse_dynamics(
@@ -133,13 +152,14 @@ impl CraneModel {
         check("acceleration", acceleration, n)?;
         check_length("effort", effort, n)?;
         check_wrench(tip_wrench)?;
-        self.update_dynamics(data, position, velocity)?;
+        self.update_joints(data, position, velocity)?;
+        self.move_bodies(data, Some(acceleration));
+        self.sum_wrenches(data, effort);
         for k in 0..n {
-            let row = &data.mass_matrix[k * n..(k + 1) * n];
-            let inertial: f64 = row.iter().zip(acceleration).map(|(m, a)| m * a).sum();
-            effort[k] = inertial + data.bias[k] + self.friction[k].effort(velocity[k]);
+            effort[k] += self.armature[k] * acceleration[k] + self.friction[k].effort(velocity[k]);
         }
         if let Some(wrench) = tip_wrench {
+            self.pose_bodies(data);
             self.add_tip_effort(data, wrench, -1.0, effort);
         }
         Ok(())
@@ -151,7 +171,7 @@ impl CraneModel {
         let moment = Vector3::from(wrench.moment) + self.tip_point(data).cross(&force);
         let F_W = Force { moment, force };
         for &i in &self.tip_path {
-            effort[self.driven_by[i]] += factor * data.slope[i] * data.subspace[i].dot(&F_W);
+            effort[self.driven_by[i]] += factor * data.slope[i] * self.subspace(data, i).dot(&F_W);
         }
     }
 
@@ -169,7 +189,7 @@ impl CraneModel {
     }
 
     /// Writes the diagonal of M⁻¹ to `diagonal` [1/(kg·m²) or 1/kg]: acceleration of each actuator per its own
-    /// effort while the others are free. As of the last `update_dynamics` or dynamics call.
+    /// effort while the others are free. As of the last `update_dynamics` or `forward_dynamics`.
     ///
     /// # Errors
     /// [`DynamicsError::Length`] or [`DynamicsError::SingularMassMatrix`].
@@ -193,9 +213,9 @@ impl CraneModel {
 
     /// Kinetic energy \[J\], armature included, as of the last update.
     pub fn kinetic_energy(&self, data: &Data) -> f64 {
-        let bodies = self.masses.iter().enumerate().map(|(i, mass)| {
-            let V_WB = &data.twist[i];
-            V_WB.dot(&mass.in_world(&data.X_WB[i]).times(V_WB))
+        let bodies = self.inertias.iter().enumerate().map(|(i, inertia)| {
+            let V_WB = self.twist(data, i);
+            V_WB.dot(&inertia.in_world(&data.X_WB[i]).times(&V_WB))
         });
         let motors = self.armature.iter().zip(&data.velocity).map(|(armature, v)| armature * v * v);
         0.5 * (bodies.sum::<f64>() + motors.sum::<f64>())
@@ -203,8 +223,8 @@ impl CraneModel {
 
     /// Potential energy of all moving bodies and the payload \[J\], zero at the world origin, as of the last update.
     pub fn potential_energy(&self, data: &Data) -> f64 {
-        let bodies = self.masses.iter().zip(&data.X_WB);
-        -bodies.map(|(mass, X_WB)| mass.mass * self.gravity.dot(&X_WB.point(&mass.center))).sum::<f64>()
+        let bodies = self.inertias.iter().zip(&data.X_WB);
+        -bodies.map(|(inertia, X_WB)| self.gravity.dot(&inertia.in_world(X_WB).first_moment)).sum::<f64>()
     }
 }
 

@@ -7,8 +7,9 @@ use serde::Serialize;
 use crate::data::Data;
 use crate::error::DynamicsError;
 use crate::model::CraneModel;
-use crate::spatial::{Motion, Transform};
+use crate::spatial::{Motion, Transform, ZERO3};
 use crate::tree::JointKind;
+use crate::turn::Placement;
 
 /// Pose of a frame in the world.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
@@ -40,21 +41,22 @@ impl CraneModel {
         position: &[f64],
         velocity: &[f64],
     ) -> Result<(), DynamicsError> {
-        let n = self.actuators.len();
-        check("position", position, n)?;
-        check("velocity", velocity, n)?;
-        self.eliminate_loops(data, position, velocity)?;
+        self.update_joints(data, position, velocity)?;
+        self.move_bodies(data, None);
         self.pose_bodies(data);
         Ok(())
     }
 
     /// q = γ(y), q̇ = Gẏ, ġ = γ″ẏ².
-    fn eliminate_loops(
+    pub(crate) fn update_joints(
         &self,
         data: &mut Data,
         position: &[f64],
         velocity: &[f64],
     ) -> Result<(), DynamicsError> {
+        let n = self.actuators.len();
+        check("position", position, n)?;
+        check("velocity", velocity, n)?;
         data.velocity.copy_from_slice(velocity);
         for actuator in &self.actuators {
             data.slope[actuator.tree_joint] = 1.0;
@@ -89,43 +91,71 @@ impl CraneModel {
         Ok(())
     }
 
-    /// One pass from the ground outwards.
-    fn pose_bodies(&self, data: &mut Data) {
+    /// Velocities and accelerations of all bodies in one pass from the ground outwards, at accelerations ġ of the tree
+    /// joints, or Gÿ + ġ.
+    pub(crate) fn move_bodies(&self, data: &mut Data, acceleration: Option<&[f64]>) {
         for (i, joint) in self.tree.joints.iter().enumerate() {
-            let (q, v) = (data.tree_position[i], data.tree_velocity[i]);
-            let (X_WP, V_WP, A_WP) = match joint.parent {
-                Some(p) => (data.X_WB[p], data.twist[p], data.acceleration[p]),
+            let placement = joint.placement(data.tree_position[i]);
+            let (turn, p) = (&placement.turn, &placement.translation);
+            let (w_P, dw_P, a_P) = match joint.parent {
+                Some(parent) => {
+                    let carrier = &data.bodies[parent];
+                    (carrier.angular_velocity, carrier.angular_acceleration, carrier.acceleration)
+                }
                 // Gravity as an acceleration of the ground.
-                None => (
-                    Transform::identity(),
-                    Motion::ZERO,
-                    Motion { angular: Vector3::zeros(), linear: -self.gravity },
-                ),
+                None => (ZERO3, ZERO3, -self.gravity),
             };
-            let X_WJ = if joint.is_parallel {
-                Transform { translation: X_WP.point(&joint.X_PJ.translation), ..X_WP }
-            } else {
-                X_WP * joint.X_PJ
-            };
-            let axis_W = joint.turning.seen_from_outside(&X_WJ.rotation);
-            let (X_WB, S) = match joint.kind {
-                JointKind::Revolute => (
-                    Transform { rotation: joint.turning.turned(&X_WJ.rotation, q), ..X_WJ },
-                    Motion { angular: axis_W, linear: X_WJ.translation.cross(&axis_W) },
-                ),
-                JointKind::Prismatic => (
-                    Transform { translation: X_WJ.translation + axis_W * q, ..X_WJ },
-                    Motion { angular: Vector3::zeros(), linear: axis_W },
-                ),
-            };
-            let S_v = S.scaled(v);
-            let V_WB = V_WP.plus(&S_v);
-            let A_WB = A_WP.plus(&S.scaled(data.tree_drift[i])).plus(&V_WB.cross_motion(&S_v));
-            data.X_WB[i] = X_WB;
-            data.subspace[i] = S;
-            data.twist[i] = V_WB;
-            data.acceleration[i] = A_WB;
+            let a_J = a_P + dw_P.cross(p) + w_P.cross(&w_P.cross(p));
+            let (w, dw, a) = (turn.inward(&w_P), turn.inward(&dw_P), turn.inward(&a_J));
+            let rate = joint.axis * data.tree_velocity[i];
+            let driven = acceleration.map_or(0.0, |values| data.slope[i] * values[self.driven_by[i]]);
+            let second = joint.axis * (data.tree_drift[i] + driven);
+            let body = &mut data.bodies[i];
+            body.placement = placement;
+            match joint.kind {
+                JointKind::Revolute => {
+                    body.angular_velocity = w + rate;
+                    body.angular_acceleration = dw + second + w.cross(&rate);
+                    body.acceleration = a;
+                }
+                JointKind::Prismatic => {
+                    body.angular_velocity = w;
+                    body.angular_acceleration = dw;
+                    body.acceleration = a + second + w.cross(&rate) * 2.0;
+                }
+            }
         }
+    }
+
+    /// Poses of all bodies in the world, of their places in their parents.
+    pub(crate) fn pose_bodies(&self, data: &mut Data) {
+        for (i, joint) in self.tree.joints.iter().enumerate() {
+            let Placement { turn, translation } = &data.bodies[i].placement;
+            let X_WP = match joint.parent {
+                Some(p) => data.X_WB[p],
+                None => Transform::identity(),
+            };
+            data.X_WB[i] =
+                Transform { rotation: turn.within(&X_WP.rotation), translation: X_WP.point(translation) };
+        }
+    }
+
+    /// Twist in the world per velocity of tree joint `joint`, as of the last update.
+    #[inline]
+    pub(crate) fn subspace(&self, data: &Data, joint: usize) -> Motion {
+        let X_WB = &data.X_WB[joint];
+        let axis_W = X_WB.rotation * self.tree.joints[joint].axis;
+        match self.tree.joints[joint].kind {
+            JointKind::Revolute => Motion { angular: axis_W, linear: X_WB.translation.cross(&axis_W) },
+            JointKind::Prismatic => Motion { angular: ZERO3, linear: axis_W },
+        }
+    }
+
+    /// Twist of a body in the world, as of the last update.
+    pub(crate) fn twist(&self, data: &Data, body: usize) -> Motion {
+        self.ancestors(body).fold(Motion::ZERO, |sum, joint| {
+            sum.plus(&self.subspace(data, joint).scaled(data.tree_velocity[joint]))
+        })
     }
 
     /// Pose of the tip, as of the last update.
@@ -147,18 +177,17 @@ impl CraneModel {
 
     /// Velocity of the tip, as of the last update.
     pub fn tip_velocity(&self, data: &Data) -> Twist {
-        let V_WB = &data.twist[self.tip_body];
+        let V_WB = self.twist(data, self.tip_body);
         Twist { linear: V_WB.linear_at(&self.tip_point(data)).into(), angular: V_WB.angular.into() }
     }
 
     /// J̇ẏ: acceleration of the tip at ÿ = 0, as of the last update.
     pub fn tip_drift(&self, data: &Data) -> Twist {
-        let p_WT = self.tip_point(data);
-        let V_WB = &data.twist[self.tip_body];
-        let A_WB = &data.acceleration[self.tip_body];
-        let centripetal = V_WB.angular.cross(&V_WB.linear_at(&p_WT));
-        let linear = A_WB.linear_at(&p_WT) + centripetal + self.gravity;
-        Twist { linear: linear.into(), angular: A_WB.angular.into() }
+        let (tip, p) = (&data.bodies[self.tip_body], &self.X_BT.translation);
+        let (w, dw) = (&tip.angular_velocity, &tip.angular_acceleration);
+        let R_WB = &data.X_WB[self.tip_body].rotation;
+        let linear = R_WB * (tip.acceleration + dw.cross(p) + w.cross(&w.cross(p))) + self.gravity;
+        Twist { linear: linear.into(), angular: (R_WB * dw).into() }
     }
 
     /// Writes the tip's Jacobian to `jacobian`: 6 × n, row by row, the three linear rows first, at the tip and in
@@ -172,7 +201,7 @@ impl CraneModel {
         jacobian.fill(0.0);
         let p_WT = self.tip_point(data);
         for &i in &self.tip_path {
-            let (S, k, slope) = (&data.subspace[i], self.driven_by[i], data.slope[i]);
+            let (S, k, slope) = (self.subspace(data, i), self.driven_by[i], data.slope[i]);
             let linear = S.linear_at(&p_WT);
             for row in 0..3 {
                 jacobian[row * n + k] += slope * linear[row];

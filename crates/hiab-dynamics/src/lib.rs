@@ -137,6 +137,7 @@ mod plant;
 mod spatial;
 mod tree;
 mod triangle;
+mod turn;
 mod urdf_text;
 
 pub use actuator::Actuator;

@@ -9,7 +9,7 @@ use crate::error::{ModelError, PlantError};
 use crate::loop_file::LoopFile;
 use crate::loops::ClosedLoop;
 use crate::plant::{Friction, Plant};
-use crate::spatial::{MassProperties, Transform};
+use crate::spatial::{Inertia, MassProperties, Transform};
 use crate::tree::{Tree, finite, refuse_duplicates};
 
 /// A crane: URDF tree, closed cylinder loops, actuators, and what was built onto it.
@@ -52,8 +52,8 @@ pub struct CraneModel {
     pub(crate) driven_by: Vec<usize>,
     pub(crate) gravity: Vector3<f64>,
     pub(crate) payload: f64,
-    /// Mass of each body, payload included.
-    pub(crate) masses: Vec<MassProperties>,
+    /// Inertia of each body in its own frame, payload included.
+    pub(crate) inertias: Vec<Inertia>,
     pub(crate) armature: Vec<f64>,
     pub(crate) friction: Vec<Friction>,
     pub(crate) tip_link: usize,
@@ -99,7 +99,7 @@ impl CraneModel {
             driven_by,
             gravity: Vector3::new(0.0, 0.0, -9.81),
             payload: 0.0,
-            masses: tree.joints.iter().map(|joint| joint.mass).collect(),
+            inertias: tree.joints.iter().map(|joint| joint.mass.about_origin()).collect(),
             armature: actuators.iter().map(Actuator::armature).collect(),
             friction: vec![Friction::NONE; actuators.len()],
             tip_link,
@@ -125,7 +125,7 @@ impl CraneModel {
             return Err(ModelError::Negative { owner: owner(), field: "mass", value: payload });
         }
         let point = MassProperties::point(payload, self.X_BT.translation);
-        self.masses[self.tip_body] = self.tree.joints[self.tip_body].mass.joined(&point);
+        self.inertias[self.tip_body] = self.tree.joints[self.tip_body].mass.joined(&point).about_origin();
         self.payload = payload;
         Ok(self)
     }

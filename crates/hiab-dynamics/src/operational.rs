@@ -19,7 +19,7 @@ impl CraneModel {
     /// The tip's mobility J M⁻¹ Jᵀ \[1/kg\], world axes: acceleration of the tip per force on it, all joints free.
     ///
     /// Of the linear part of J; symmetric, and singular where some direction is closed to the tip. As of the last
-    /// `update_dynamics` or dynamics call; armature counts, friction does not.
+    /// `update_dynamics` or `forward_dynamics`; armature counts, friction does not.
     ///
     /// # Errors
     /// [`DynamicsError::SingularMassMatrix`] as for [`forward_dynamics`](Self::forward_dynamics).
@@ -77,7 +77,7 @@ impl CraneModel {
         for (row, column) in columns.iter_mut().enumerate() {
             column.fill(0.0);
             for &i in &self.tip_path {
-                column[self.driven_by[i]] += data.slope[i] * data.subspace[i].linear_at(&p_wt)[row];
+                column[self.driven_by[i]] += data.slope[i] * self.subspace(data, i).linear_at(&p_wt)[row];
             }
             cholesky::forward(n, &data.factor, column);
         }

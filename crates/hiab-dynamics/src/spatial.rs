@@ -1,12 +1,13 @@
-//! Rigid transforms and spatial (six-dimensional) vectors, referred to the world origin.
+//! Rigid transforms, spatial (six-dimensional) vectors and inertias.
 //!
-//! Twists, wrenches and inertias of all bodies share one reference point, the world origin W, so that adding
-//! two of them is a plain sum and the recursions of `kinematics` and `dynamics` need no shift between bodies.
-//! The price is a cancellation of the order (distance from W)² · ε, 1e-14 relative for a machine some metres
-//! across: place the URDF's root near the machine.
+//! Each is expressed in some frame: in its axes, and referred to its origin. In the recursions of `kinematics` and
+//! `dynamics` that is the body's own frame, where its inertia does not change; what is asked for at the tip is put
+//! together in the world.
 #![expect(non_snake_case, reason = "monogram frames")]
 
 use nalgebra::{Matrix3, Vector3};
+
+use crate::turn::{Placement, Turn};
 
 /// Pose of one frame in another; `X_AC = X_AB * X_BC`.
 #[derive(Clone, Copy, Debug)]
@@ -36,78 +37,14 @@ impl std::ops::Mul for Transform {
     }
 }
 
-/// A unit axis, told apart by what a rotation about it costs.
-#[derive(Clone, Copy, Debug)]
-pub(crate) enum Axis {
-    /// Coordinate axis 0, 1 or 2, and the sign of its direction.
-    Coordinate(usize, f64),
-    /// Any other unit vector.
-    Oblique(Vector3<f64>),
-}
-
-impl Axis {
-    /// Of a unit vector.
-    pub(crate) fn along(axis: &Vector3<f64>) -> Self {
-        match (0..3).find(|&i| axis[i].abs() == 1.0) {
-            Some(i) => Self::Coordinate(i, axis[i]),
-            None => Self::Oblique(*axis),
-        }
-    }
-
-    /// The axis in the outer frame of `rotation`.
-    #[inline]
-    pub(crate) fn seen_from_outside(&self, rotation: &Matrix3<f64>) -> Vector3<f64> {
-        match self {
-            Self::Coordinate(i, sign) => rotation.column(*i) * *sign,
-            Self::Oblique(axis) => rotation * axis,
-        }
-    }
-
-    /// `rotation`, followed inside by a rotation by `angle` \[rad\] about the axis.
-    #[inline]
-    pub(crate) fn turned(&self, rotation: &Matrix3<f64>, angle: f64) -> Matrix3<f64> {
-        let (s, c) = libm::sincos(angle);
-        match self {
-            Self::Coordinate(i, sign) => {
-                let s = s * sign;
-                let column = |i: usize| Vector3::new(rotation[(0, i)], rotation[(1, i)], rotation[(2, i)]);
-                let (x, y, z) = (column(0), column(1), column(2));
-                match i {
-                    0 => Matrix3::from_columns(&[x, y * c + z * s, z * c - y * s]),
-                    1 => Matrix3::from_columns(&[x * c - z * s, y, z * c + x * s]),
-                    _ => Matrix3::from_columns(&[x * c + y * s, y * c - x * s, z]),
-                }
-            }
-            Self::Oblique(axis) => rotation * rodrigues(axis, s, c),
-        }
-    }
-}
-
-/// Rotation about the unit vector `axis` by the angle with sine `s` and cosine `c` (Rodrigues).
-fn rodrigues(axis: &Vector3<f64>, s: f64, c: f64) -> Matrix3<f64> {
-    let (x, y, z) = (axis.x, axis.y, axis.z);
-    let t = 1.0 - c;
-    Matrix3::new(
-        c + t * x * x,
-        t * x * y - s * z,
-        t * x * z + s * y,
-        t * x * y + s * z,
-        c + t * y * y,
-        t * y * z - s * x,
-        t * x * z - s * y,
-        t * y * z + s * x,
-        c + t * z * z,
-    )
-}
-
-/// Twist or its derivative: angular part, and linear part of the body point that is at the world origin.
+/// Twist: angular part, and linear part of the body point that is at the frame's origin.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Motion {
     pub(crate) angular: Vector3<f64>,
     pub(crate) linear: Vector3<f64>,
 }
 
-/// Wrench or momentum: moment about the world origin, and force.
+/// Wrench or momentum: moment about the frame's origin, and force.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Force {
     pub(crate) moment: Vector3<f64>,
@@ -151,7 +88,7 @@ impl Motion {
         self.angular.dot(&wrench.moment) + self.linear.dot(&wrench.force)
     }
 
-    /// Linear part at `point` (world) instead of at the world origin.
+    /// Linear part at `point` instead of at the origin.
     #[inline]
     pub(crate) fn linear_at(&self, point: &Vector3<f64>) -> Vector3<f64> {
         self.linear + self.angular.cross(point)
@@ -171,58 +108,54 @@ impl Force {
     }
 }
 
-/// Inertia of a body, or of several, about the world origin in world axes.
+/// Inertia of a body, or of several, about the origin of the frame that it is expressed in.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Inertia {
     /// Mass \[kg\].
     pub(crate) mass: f64,
     /// Mass times centre of mass \[kg·m\].
     pub(crate) first_moment: Vector3<f64>,
-    /// Rotational inertia about the world origin \[kg·m²\].
+    /// Rotational inertia about that origin \[kg·m²\].
     pub(crate) about_origin: Symmetric,
 }
 
 /// A symmetric 3 × 3 matrix: six numbers instead of nine.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Symmetric {
-    diagonal: Vector3<f64>,
-    /// Entries (1, 2), (2, 0) and (0, 1).
-    beside: Vector3<f64>,
+    pub(crate) diagonal: Vector3<f64>,
+    /// Entries (1, 2), (2, 0) and (0, 1): each has the index that it lacks.
+    pub(crate) beside: Vector3<f64>,
 }
 
 impl Symmetric {
-    const ZERO: Self = Self { diagonal: ZERO3, beside: ZERO3 };
-
-    /// R·`inner`·Rᵀ of a symmetric `inner`.
-    #[inline]
-    fn rotated(R: &Matrix3<f64>, inner: &Matrix3<f64>) -> Self {
-        let half = R * inner;
-        let row = |m: &Matrix3<f64>, i: usize| Vector3::new(m[(i, 0)], m[(i, 1)], m[(i, 2)]);
-        let entry = |i: usize, j: usize| row(&half, i).dot(&row(R, j));
-        Self {
-            diagonal: Vector3::new(entry(0, 0), entry(1, 1), entry(2, 2)),
-            beside: Vector3::new(entry(1, 2), entry(2, 0), entry(0, 1)),
-        }
+    /// The lower triangle of a full matrix.
+    pub(crate) fn of(m: &Matrix3<f64>) -> Self {
+        Self { diagonal: m.diagonal(), beside: Vector3::new(m[(2, 1)], m[(2, 0)], m[(1, 0)]) }
     }
 
-    /// Of a point mass at `r` about the origin: m (|r|² 1 − r rᵀ).
+    /// The full matrix.
+    pub(crate) fn full(&self) -> Matrix3<f64> {
+        let (d, b) = (&self.diagonal, &self.beside);
+        Matrix3::new(d.x, b.z, b.y, b.z, d.y, b.x, b.y, b.x, d.z)
+    }
+
+    /// p·u 1 − ½(p uᵀ + u pᵀ), twice. With u = ½ m p the inertia of a point mass m at p about the origin.
     #[inline]
-    fn of_point(mass: f64, r: &Vector3<f64>) -> Self {
-        let (x, y, z) = (r.x, r.y, r.z);
-        let (xx, yy, zz) = (mass * x * x, mass * y * y, mass * z * z);
+    pub(crate) fn of_pair(p: &Vector3<f64>, u: &Vector3<f64>) -> Self {
+        let (x, y, z) = (2.0 * p.x * u.x, 2.0 * p.y * u.y, 2.0 * p.z * u.z);
         Self {
-            diagonal: Vector3::new(yy + zz, zz + xx, xx + yy),
-            beside: Vector3::new(-mass * y * z, -mass * z * x, -mass * x * y),
+            diagonal: Vector3::new(y + z, z + x, x + y),
+            beside: -Vector3::new(p.y * u.z + p.z * u.y, p.z * u.x + p.x * u.z, p.x * u.y + p.y * u.x),
         }
     }
 
     #[inline]
-    fn plus(&self, other: &Self) -> Self {
+    pub(crate) fn plus(&self, other: &Self) -> Self {
         Self { diagonal: self.diagonal + other.diagonal, beside: self.beside + other.beside }
     }
 
     #[inline]
-    fn times(&self, v: &Vector3<f64>) -> Vector3<f64> {
+    pub(crate) fn times(&self, v: &Vector3<f64>) -> Vector3<f64> {
         let (d, b) = (&self.diagonal, &self.beside);
         Vector3::new(
             d.x * v.x + b.z * v.y + b.y * v.z,
@@ -233,7 +166,28 @@ impl Symmetric {
 }
 
 impl Inertia {
-    pub(crate) const ZERO: Self = Self { mass: 0.0, first_moment: ZERO3, about_origin: Symmetric::ZERO };
+    pub(crate) const ZERO: Self =
+        Self { mass: 0.0, first_moment: ZERO3, about_origin: Symmetric { diagonal: ZERO3, beside: ZERO3 } };
+
+    /// Wrench on a body that moves like this; its origin accelerates by `acceleration`.
+    #[inline]
+    pub(crate) fn wrench_at(
+        &self,
+        angular_velocity: &Vector3<f64>,
+        angular_acceleration: &Vector3<f64>,
+        acceleration: &Vector3<f64>,
+    ) -> Force {
+        let (w, h, I) = (angular_velocity, &self.first_moment, &self.about_origin);
+        Force {
+            moment: I.times(angular_acceleration) + w.cross(&I.times(w)) + h.cross(acceleration),
+            force: acceleration * self.mass + angular_acceleration.cross(h) + w.cross(&w.cross(h)),
+        }
+    }
+
+    /// The same about the world origin, of a body at pose `X_WB`.
+    pub(crate) fn in_world(&self, X_WB: &Transform) -> Self {
+        Placement { turn: Turn::General(X_WB.rotation), translation: X_WB.translation }.inertia(self)
+    }
 
     #[inline]
     pub(crate) fn plus(&self, other: &Self) -> Self {
@@ -244,7 +198,7 @@ impl Inertia {
         }
     }
 
-    /// Momentum at twist `v`, or the inertial part of the wrench at acceleration `v`.
+    /// Momentum at twist `v`.
     #[inline]
     pub(crate) fn times(&self, v: &Motion) -> Force {
         Force {
@@ -297,44 +251,19 @@ impl MassProperties {
         Self { mass, center, about_center }
     }
 
-    /// Inertia about the world origin at pose `X_WB`.
-    #[inline]
-    pub(crate) fn in_world(&self, X_WB: &Transform) -> Inertia {
-        let center = X_WB.point(&self.center);
-        let rotated = Symmetric::rotated(&X_WB.rotation, &self.about_center);
+    /// Inertia about the origin of the frame.
+    pub(crate) fn about_origin(&self) -> Inertia {
         Inertia {
             mass: self.mass,
-            first_moment: center * self.mass,
-            about_origin: rotated.plus(&Symmetric::of_point(self.mass, &center)),
+            first_moment: self.center * self.mass,
+            about_origin: Symmetric::of(&(self.about_center + steiner(self.mass, &self.center))),
         }
     }
 }
 
 /// Rotational inertia of a point mass at `r` about the origin, as a full matrix.
 fn steiner(mass: f64, r: &Vector3<f64>) -> Matrix3<f64> {
-    let Symmetric { diagonal: d, beside: b } = Symmetric::of_point(mass, r);
-    Matrix3::new(d.x, b.z, b.y, b.z, d.y, b.x, b.y, b.x, d.z)
+    Symmetric::of_pair(r, &(r * (0.5 * mass))).full()
 }
 
-const ZERO3: Vector3<f64> = Vector3::new(0.0, 0.0, 0.0);
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn a_coordinate_axis_turns_as_any_other_does() {
-        let rotation = rodrigues(&Vector3::new(0.48, -0.6, 0.64), 0.28, 0.96);
-        for axis in [Vector3::x(), -Vector3::x(), Vector3::y(), -Vector3::y(), Vector3::z(), -Vector3::z()] {
-            let quick = Axis::along(&axis);
-            assert!(matches!(quick, Axis::Coordinate(..)), "{axis}");
-            let general = Axis::Oblique(axis);
-            for angle in [-2.9, -0.3, 0.0, 1.2] {
-                let gap = quick.turned(&rotation, angle) - general.turned(&rotation, angle);
-                assert!(gap.abs().max() < 1e-15, "about {axis} by {angle}: {gap}");
-            }
-            let gap = quick.seen_from_outside(&rotation) - general.seen_from_outside(&rotation);
-            assert!(gap.abs().max() < 1e-15, "{axis}: {gap}");
-        }
-    }
-}
+pub(crate) const ZERO3: Vector3<f64> = Vector3::new(0.0, 0.0, 0.0);

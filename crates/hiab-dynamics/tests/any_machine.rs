@@ -92,6 +92,7 @@ proptest! {
         let mut data = model.new_data();
         let mut effort = vec![0.0; position.len()];
         model.inverse_dynamics(&mut data, position, velocity, acceleration, Some(wrench), &mut effort).unwrap();
+        model.update_kinematics(&mut data, position, velocity).unwrap();
         let tip = model.tip_velocity(&data);
         let mut friction = vec![0.0; position.len()];
         model.friction_effort(velocity, &mut friction).unwrap();
