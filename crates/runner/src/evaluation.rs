@@ -15,6 +15,9 @@ use crate::observation::Scaling;
 use crate::stage::Stage;
 use crate::statistics;
 
+/// Most episodes that are named for having failed.
+pub const MAX_NAMED: usize = 20;
+
 /// Which episodes are played.
 #[derive(Clone, Copy, Debug)]
 pub struct Plan {
@@ -91,6 +94,9 @@ pub struct Summary {
     pub success_rate: f64,
     /// Wilson interval of the success rate at 95 % confidence.
     pub success_ci95: [f64; 2],
+    /// Numbers of the first episodes that did not reach the target, [`MAX_NAMED`] at most, for `play --episode`.
+    #[serde(default)] // files of earlier versions do not say
+    pub not_reached: Vec<u64>,
     /// Time to reach the target, of the episodes that did.
     pub time_to_reach_s: Times,
     /// Distance of tip and target when the episode ended, of all episodes.
@@ -217,6 +223,7 @@ fn summarise(played: &[Played], evidence: &Evidence, machine: &Machine) -> Summa
         episodes: played.len() as u64,
         success_rate: times.len() as f64 / played.len().max(1) as f64,
         success_ci95: statistics::wilson_95(times.len(), played.len()),
+        not_reached: played.iter().filter(|e| !e.reached).map(|e| e.number).take(MAX_NAMED).collect(),
         time_to_reach_s: Times {
             mean: statistics::mean(&times),
             median: statistics::quantile(&times, 0.5),

@@ -81,6 +81,9 @@ fn an_episode_is_played_step_by_step_as_in_the_evaluation() {
         last.starts_with(word) && last.contains("violations of limits 0 (reference) and 0 (actual)"),
         "{last}"
     );
+    let closing: Value = serde_json::from_str(&project.text("runs/a/purple/eval.json")).unwrap();
+    let named = closing["not_reached"].as_array().unwrap();
+    assert_eq!(named.contains(&2.into()), result["reached"] == false, "{named:?}");
     let sum: f64 = steps.iter().map(|step| step["reward"].as_f64().unwrap()).sum();
     assert!((sum - result["return"].as_f64().unwrap()).abs() < 1e-12, "{sum} against {result}");
     for step in steps {

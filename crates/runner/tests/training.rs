@@ -207,6 +207,7 @@ fn an_evaluation_has_the_promised_keys_and_repeats() {
         "episodes",
         "success_rate",
         "success_ci95",
+        "not_reached",
         "time_to_reach_s",
         "tip_error_m",
         "violations",
