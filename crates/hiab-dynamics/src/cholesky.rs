@@ -7,21 +7,18 @@
 /// Index and value of the first pivot that is not positive.
 pub(crate) fn factorize(n: usize, matrix: &[f64], factor: &mut [f64]) -> Result<(), (usize, f64)> {
     for i in 0..n {
-        for j in 0..=i {
-            let mut sum = matrix[i * n + j];
-            for k in 0..j {
-                sum -= factor[i * n + k] * factor[j * n + k];
-            }
-            if i == j {
-                // Not `sum <= 0`: NaN is no pivot either.
-                if !(sum > 0.0 && sum.is_finite()) {
-                    return Err((i, sum));
-                }
-                factor[i * n + i] = 1.0 / sum.sqrt();
-            } else {
-                factor[i * n + j] = sum * factor[j * n + j];
-            }
+        let (above, row) = factor.split_at_mut(i * n);
+        let (row, wanted) = (&mut row[..=i], &matrix[i * n..=i * n + i]);
+        for j in 0..i {
+            let other = &above[j * n..=j * n + j];
+            row[j] = (wanted[j] - dot(&row[..j], &other[..j])) * other[j];
         }
+        let sum = wanted[i] - dot(&row[..i], &row[..i]);
+        // Not `sum <= 0`: NaN is no pivot either.
+        if !(sum > 0.0 && sum < f64::INFINITY) {
+            return Err((i, sum));
+        }
+        row[i] = 1.0 / sum.sqrt();
     }
     Ok(())
 }
@@ -29,11 +26,8 @@ pub(crate) fn factorize(n: usize, matrix: &[f64], factor: &mut [f64]) -> Result<
 /// Solves L x = b in place.
 pub(crate) fn forward(n: usize, factor: &[f64], x: &mut [f64]) {
     for i in 0..n {
-        let mut sum = x[i];
-        for k in 0..i {
-            sum -= factor[i * n + k] * x[k];
-        }
-        x[i] = sum * factor[i * n + i];
+        let row = &factor[i * n..=i * n + i];
+        x[i] = (x[i] - dot(&row[..i], &x[..i])) * row[i];
     }
 }
 
@@ -41,12 +35,17 @@ pub(crate) fn forward(n: usize, factor: &[f64], x: &mut [f64]) {
 pub(crate) fn solve(n: usize, factor: &[f64], x: &mut [f64]) {
     forward(n, factor, x);
     for i in (0..n).rev() {
-        let mut sum = x[i];
-        for k in i + 1..n {
-            sum -= factor[k * n + i] * x[k];
+        let row = &factor[i * n..=i * n + i];
+        let value = x[i] * row[i];
+        x[i] = value;
+        for (earlier, entry) in x[..i].iter_mut().zip(row) {
+            *earlier -= entry * value;
         }
-        x[i] = sum * factor[i * n + i];
     }
+}
+
+fn dot(a: &[f64], b: &[f64]) -> f64 {
+    a.iter().zip(b).fold(0.0, |sum, (a, b)| sum + a * b)
 }
 
 #[cfg(test)]

@@ -28,19 +28,19 @@ impl CraneModel {
             let V_WB = &self.twist(data, body);
             let momentum = I_W.times(V_WB);
             for j in self.ancestors(body) {
-                let (S_j, slope) = (&self.subspace(data, j), data.slope[j]);
+                let s = &data.columns[j];
                 let k_j = self.driven_by[j];
                 // The column of J̇: the axis is carried along by its body, and the slope changes.
                 let slope_rate = data.curvature[j] * data.velocity[k_j];
-                let S_dot = self.twist(data, j).cross_motion(S_j).scaled(slope).plus(&S_j.scaled(slope_rate));
-                let s = S_j.scaled(slope);
+                let bare = self.tree.joints[j].subspace(&data.X_WB[j]);
+                let s_dot = self.twist(data, j).cross_motion(s).plus(&bare.scaled(slope_rate));
                 let force = I_W
-                    .times(&S_dot)
-                    .plus(&V_WB.cross_force(&I_W.times(&s)).scaled(0.5))
+                    .times(&s_dot)
+                    .plus(&V_WB.cross_force(&I_W.times(s)).scaled(0.5))
                     .plus(&s.cross_force(&momentum).scaled(0.5))
-                    .plus(&I_W.times(&V_WB.cross_motion(&s)).scaled(-0.5));
+                    .plus(&I_W.times(&V_WB.cross_motion(s)).scaled(-0.5));
                 for i in self.ancestors(body) {
-                    matrix[self.driven_by[i] * n + k_j] += data.slope[i] * self.subspace(data, i).dot(&force);
+                    matrix[self.driven_by[i] * n + k_j] += data.columns[i].dot(&force);
                 }
             }
         }

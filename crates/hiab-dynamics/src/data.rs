@@ -3,7 +3,7 @@
 
 use nalgebra::Vector3;
 
-use crate::spatial::{Force, Inertia, Transform, ZERO3};
+use crate::spatial::{Force, Inertia, Motion, Transform, ZERO3};
 use crate::turn::Placement;
 
 /// Workspace of one [`CraneModel`](crate::CraneModel), made by its `new_data`.
@@ -30,6 +30,8 @@ pub struct Data {
     pub(crate) curvature: Vec<f64>,
     // Bodies.
     pub(crate) X_WB: Vec<Transform>,
+    /// Twist in the world per velocity of the joint's actuator.
+    pub(crate) columns: Vec<Motion>,
     pub(crate) bodies: Vec<Body>,
     // Integration.
     pub(crate) stages: Stages,
@@ -90,6 +92,7 @@ impl Data {
             slope: vec![1.0; bodies],
             curvature: tree(),
             X_WB: vec![Transform::identity(); bodies],
+            columns: vec![Motion::ZERO; bodies],
             bodies: vec![Body::AT_REST; bodies],
             stages: Stages {
                 position: n(),

@@ -59,7 +59,7 @@ impl CraneModel {
         }
     }
 
-    /// Mass matrix and gravity effort, from the tips inwards.
+    /// Mass matrix and gravity effort: inertias from the tips inwards, and then the momentum of every joint.
     fn sum_inertias(&self, data: &mut Data) {
         let n = self.actuators.len();
         data.mass_matrix.fill(0.0);
@@ -68,30 +68,28 @@ impl CraneModel {
             body.composite = *inertia;
         }
         for (i, joint) in self.tree.joints.iter().enumerate().rev() {
+            if let Some(p) = joint.parent {
+                let body = &data.bodies[i];
+                let carried = body.placement.inertia(&body.composite);
+                data.bodies[p].composite = data.bodies[p].composite.plus(&carried);
+            }
+        }
+        for (i, joint) in self.tree.joints.iter().enumerate() {
             let (k_i, slope_i) = (self.driven_by[i], data.slope[i]);
-            let composite = data.bodies[i].composite;
-            let weight_per_mass = -data.X_WB[i].rotation.tr_mul(&self.gravity);
-            let weight = Force {
-                moment: composite.first_moment.cross(&weight_per_mass),
-                force: weight_per_mass * composite.mass,
-            };
-            data.gravity_effort[k_i] += slope_i * joint.effort(&weight);
+            // Momentum of all that joint i carries, per velocity of its actuator.
+            let momentum = joint.momentum(&data.bodies[i].composite).scaled(slope_i);
+            let momentum_W = data.X_WB[i].wrench(&momentum);
+            data.gravity_effort[k_i] -= momentum_W.force.dot(&self.gravity);
 
             // Column i of H up to the ground, folded into M at once.
-            let mut momentum = composite.times(&joint.subspace());
-            data.mass_matrix[k_i * n + k_i] += slope_i * slope_i * joint.effort(&momentum);
-            let mut body = i;
-            while let Some(j) = self.tree.joints[body].parent {
-                momentum = data.bodies[body].placement.wrench(&momentum);
+            data.mass_matrix[k_i * n + k_i] += slope_i * joint.effort(&momentum);
+            let mut ancestor = joint.parent;
+            while let Some(j) = ancestor {
                 let k_j = self.driven_by[j];
-                let value = slope_i * data.slope[j] * self.tree.joints[j].effort(&momentum);
+                let value = data.columns[j].dot(&momentum_W);
                 data.mass_matrix[k_i * n + k_j] += value;
                 data.mass_matrix[k_j * n + k_i] += value;
-                body = j;
-            }
-            if let Some(p) = joint.parent {
-                let carried = data.bodies[i].placement.inertia(&composite);
-                data.bodies[p].composite = data.bodies[p].composite.plus(&carried);
+                ancestor = self.tree.joints[j].parent;
             }
         }
         for (k, armature) in self.armature.iter().enumerate() {
@@ -171,7 +169,7 @@ impl CraneModel {
         let moment = Vector3::from(wrench.moment) + self.tip_point(data).cross(&force);
         let F_W = Force { moment, force };
         for &i in &self.tip_path {
-            effort[self.driven_by[i]] += factor * data.slope[i] * self.subspace(data, i).dot(&F_W);
+            effort[self.driven_by[i]] += factor * data.columns[i].dot(&F_W);
         }
     }
 

@@ -6,9 +6,9 @@ use serde::Serialize;
 
 use crate::data::Data;
 use crate::error::DynamicsError;
+use crate::joint::JointKind;
 use crate::model::CraneModel;
 use crate::spatial::{Motion, Transform, ZERO3};
-use crate::tree::JointKind;
 use crate::turn::Placement;
 
 /// Pose of a frame in the world.
@@ -88,15 +88,17 @@ impl CraneModel {
             data.tree_velocity[joint] = data.slope[joint] * rate;
             data.tree_drift[joint] = data.curvature[joint] * rate * rate;
         }
+        for ((joint, body), q) in self.tree.joints.iter().zip(&mut data.bodies).zip(&data.tree_position) {
+            joint.place(*q, &mut body.placement);
+        }
         Ok(())
     }
 
     /// Velocities and accelerations of all bodies in one pass from the ground outwards, at accelerations ġ of the tree
-    /// joints, or Gÿ + ġ.
+    /// joints, or Gÿ + ġ. In it w is ω and dw its derivative.
     pub(crate) fn move_bodies(&self, data: &mut Data, acceleration: Option<&[f64]>) {
         for (i, joint) in self.tree.joints.iter().enumerate() {
-            let placement = joint.placement(data.tree_position[i]);
-            let (turn, p) = (&placement.turn, &placement.translation);
+            let Placement { turn, translation: p } = &data.bodies[i].placement;
             let (w_P, dw_P, a_P) = match joint.parent {
                 Some(parent) => {
                     let carrier = &data.bodies[parent];
@@ -111,7 +113,6 @@ impl CraneModel {
             let driven = acceleration.map_or(0.0, |values| data.slope[i] * values[self.driven_by[i]]);
             let second = joint.axis * (data.tree_drift[i] + driven);
             let body = &mut data.bodies[i];
-            body.placement = placement;
             match joint.kind {
                 JointKind::Revolute => {
                     body.angular_velocity = w + rate;
@@ -127,34 +128,27 @@ impl CraneModel {
         }
     }
 
-    /// Poses of all bodies in the world, of their places in their parents.
+    /// Poses of all bodies in the world, of their places in their parents, and what each joint does there.
     pub(crate) fn pose_bodies(&self, data: &mut Data) {
         for (i, joint) in self.tree.joints.iter().enumerate() {
             let Placement { turn, translation } = &data.bodies[i].placement;
-            let X_WP = match joint.parent {
-                Some(p) => data.X_WB[p],
-                None => Transform::identity(),
-            };
-            data.X_WB[i] =
+            let X_WP = joint.parent.map_or(Transform::identity(), |p| data.X_WB[p]);
+            let X_WB =
                 Transform { rotation: turn.within(&X_WP.rotation), translation: X_WP.point(translation) };
+            data.X_WB[i] = X_WB;
         }
-    }
-
-    /// Twist in the world per velocity of tree joint `joint`, as of the last update.
-    #[inline]
-    pub(crate) fn subspace(&self, data: &Data, joint: usize) -> Motion {
-        let X_WB = &data.X_WB[joint];
-        let axis_W = X_WB.rotation * self.tree.joints[joint].axis;
-        match self.tree.joints[joint].kind {
-            JointKind::Revolute => Motion { angular: axis_W, linear: X_WB.translation.cross(&axis_W) },
-            JointKind::Prismatic => Motion { angular: ZERO3, linear: axis_W },
+        // Not in the loop above: nothing here waits for a parent, so the processor overlaps the bodies.
+        for ((column, joint), (X_WB, slope)) in
+            data.columns.iter_mut().zip(&self.tree.joints).zip(data.X_WB.iter().zip(&data.slope))
+        {
+            *column = joint.subspace(X_WB).scaled(*slope);
         }
     }
 
     /// Twist of a body in the world, as of the last update.
     pub(crate) fn twist(&self, data: &Data, body: usize) -> Motion {
         self.ancestors(body).fold(Motion::ZERO, |sum, joint| {
-            sum.plus(&self.subspace(data, joint).scaled(data.tree_velocity[joint]))
+            sum.plus(&data.columns[joint].scaled(data.velocity[self.driven_by[joint]]))
         })
     }
 
@@ -201,11 +195,11 @@ impl CraneModel {
         jacobian.fill(0.0);
         let p_WT = self.tip_point(data);
         for &i in &self.tip_path {
-            let (S, k, slope) = (self.subspace(data, i), self.driven_by[i], data.slope[i]);
-            let linear = S.linear_at(&p_WT);
+            let (column, k) = (&data.columns[i], self.driven_by[i]);
+            let linear = column.linear_at(&p_WT);
             for row in 0..3 {
-                jacobian[row * n + k] += slope * linear[row];
-                jacobian[(row + 3) * n + k] += slope * S.angular[row];
+                jacobian[row * n + k] += linear[row];
+                jacobian[(row + 3) * n + k] += column.angular[row];
             }
         }
         Ok(())

@@ -46,7 +46,8 @@
 //! M(y) = GᵀHG        M ÿ + Gᵀ(h + Hġ) = effort − friction + Jᵀ·wrench
 //! ```
 //!
-//! H by composite bodies, h + Hġ by one Newton-Euler pass, M factorised by Cholesky. φ′ = ℓ/(ab sin φ) has a pole
+//! H by composite bodies, h + Hġ by one Newton-Euler pass, M factorised by Cholesky. Inverse dynamics is that pass
+//! alone, with Gÿ + ġ in place of ġ. Both run in the bodies' own frames, where inertias do not change. φ′ = ℓ/(ab sin φ) has a pole
 //! where the pins are in line; a stroke at which sin φ < 0.15 is an error. So is a negative
 //! one if the actuator's range has none, since no rod goes below the cylinder's retracted length.
 //!
@@ -127,6 +128,7 @@ mod error;
 mod evaluation;
 mod fault;
 mod integrate;
+mod joint;
 mod kinematics;
 mod load_chart;
 mod loop_file;

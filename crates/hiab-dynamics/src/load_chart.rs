@@ -132,7 +132,7 @@ impl CraneModel {
         self.update_dynamics(data, position, per_mass)?;
         let p_wt = self.tip_point(data);
         for &i in &self.tip_path {
-            let rise = self.subspace(data, i).linear_at(&p_wt) * data.slope[i];
+            let rise = data.columns[i].linear_at(&p_wt);
             per_mass[self.driven_by[i]] -= rise.dot(&self.gravity);
         }
         for k in 0..effort.len() {
@@ -267,7 +267,7 @@ impl CraneModel {
         let mut jacobian = Matrix2::zeros();
         for &i in &self.tip_path {
             let Some(column) = solved.iter().position(|k| *k == self.driven_by[i]) else { continue };
-            let rate = self.subspace(data, i).linear_at(&p_wt) * data.slope[i];
+            let rate = data.columns[i].linear_at(&p_wt);
             jacobian[(0, column)] += rate.x;
             jacobian[(1, column)] += rate.z;
         }

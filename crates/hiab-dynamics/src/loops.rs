@@ -8,9 +8,10 @@ use nalgebra::{Vector2, Vector3};
 use crate::actuator::Actuator;
 use crate::error::ModelError;
 use crate::fault::{CloseFault, LoopFault};
+use crate::joint::JointKind;
 use crate::loop_file::{Branch, ClosedLoopSpec, LoopKind};
 use crate::spatial::Transform;
-use crate::tree::{JointKind, Tree};
+use crate::tree::Tree;
 use crate::triangle::{MIN_SIN_AT_HINGE, Triangle};
 
 /// How far from parallel axes may be \[1\], and how far from one plane pins may be \[m\]: what rounding of published

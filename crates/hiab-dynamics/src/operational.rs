@@ -77,7 +77,7 @@ impl CraneModel {
         for (row, column) in columns.iter_mut().enumerate() {
             column.fill(0.0);
             for &i in &self.tip_path {
-                column[self.driven_by[i]] += data.slope[i] * self.subspace(data, i).linear_at(&p_wt)[row];
+                column[self.driven_by[i]] += data.columns[i].linear_at(&p_wt)[row];
             }
             cholesky::forward(n, &data.factor, column);
         }

@@ -26,6 +26,13 @@ impl Transform {
     pub(crate) fn point(&self, p: &Vector3<f64>) -> Vector3<f64> {
         self.rotation * p + self.translation
     }
+
+    /// The same wrench in the outer frame.
+    #[inline]
+    pub(crate) fn wrench(&self, inner: &Force) -> Force {
+        let force = self.rotation * inner.force;
+        Force { moment: self.rotation * inner.moment + self.translation.cross(&force), force }
+    }
 }
 
 impl std::ops::Mul for Transform {
@@ -103,6 +110,7 @@ impl Force {
         Self { moment: self.moment + other.moment, force: self.force + other.force }
     }
 
+    #[inline]
     pub(crate) fn scaled(&self, factor: f64) -> Self {
         Self { moment: self.moment * factor, force: self.force * factor }
     }
@@ -146,6 +154,16 @@ impl Symmetric {
         Self {
             diagonal: Vector3::new(y + z, z + x, x + y),
             beside: -Vector3::new(p.y * u.z + p.z * u.y, p.z * u.x + p.x * u.z, p.x * u.y + p.y * u.x),
+        }
+    }
+
+    #[inline]
+    pub(crate) fn column(&self, i: usize) -> Vector3<f64> {
+        let (d, b) = (&self.diagonal, &self.beside);
+        match i {
+            0 => Vector3::new(d.x, b.z, b.y),
+            1 => Vector3::new(b.z, d.y, b.x),
+            _ => Vector3::new(b.y, b.x, d.z),
         }
     }
 

@@ -8,8 +8,8 @@ use urdf_rs::JointType;
 
 use crate::error::ModelError;
 use crate::fault::TreeFault;
-use crate::spatial::{Force, MassProperties, Motion, Transform, ZERO3};
-use crate::turn::{Axis, Placement, Turn};
+use crate::joint::{JointKind, TreeJoint};
+use crate::spatial::{MassProperties, Transform};
 use crate::urdf_text;
 
 /// A tree of bodies, each moved by one joint against its parent. Bodies and joints share their index; a parent's
@@ -20,75 +20,6 @@ pub(crate) struct Tree {
     pub(crate) links: Vec<TreeLink>,
     /// Joints of the URDF that do not move.
     pub(crate) fixed_joints: Vec<String>,
-}
-
-/// A moving joint and the body behind it.
-#[derive(Clone, Debug)]
-pub(crate) struct TreeJoint {
-    pub(crate) name: String,
-    pub(crate) kind: JointKind,
-    /// Body that it starts on; `None` is the ground.
-    pub(crate) parent: Option<usize>,
-    /// Pose of the joint's frame J in the parent body P.
-    pub(crate) X_PJ: Transform,
-    /// Whether J is parallel to P, as it mostly is; that saves a product of rotations.
-    is_parallel: bool,
-    /// Unit axis in J, and so in the body's own frame as well.
-    pub(crate) axis: Vector3<f64>,
-    /// The same axis, for turning about it.
-    turning: Axis,
-    /// The same axis in P, for sliding along it.
-    sliding: Vector3<f64>,
-    /// Middle of the URDF's position limits, if it has any [rad or m].
-    pub(crate) middle: Option<f64>,
-    /// Mass of the body, links fixed to it included, in its own frame.
-    pub(crate) mass: MassProperties,
-}
-
-impl TreeJoint {
-    /// Twist of the joint's body per velocity, in its own frame.
-    #[inline]
-    pub(crate) fn subspace(&self) -> Motion {
-        match self.kind {
-            JointKind::Revolute => Motion { angular: self.axis, linear: ZERO3 },
-            JointKind::Prismatic => Motion { angular: ZERO3, linear: self.axis },
-        }
-    }
-
-    /// Effort that the joint has of a wrench on its body, in the body's frame [N·m or N].
-    #[inline]
-    pub(crate) fn effort(&self, wrench: &Force) -> f64 {
-        match self.kind {
-            JointKind::Revolute => self.axis.dot(&wrench.moment),
-            JointKind::Prismatic => self.axis.dot(&wrench.force),
-        }
-    }
-
-    /// Where the joint's body is in its parent at position `q` [rad or m].
-    #[inline]
-    pub(crate) fn placement(&self, q: f64) -> Placement {
-        let X_PJ = &self.X_PJ;
-        match self.kind {
-            JointKind::Revolute => {
-                let turn = Turn::about(&self.turning, q);
-                let turn = if self.is_parallel { turn } else { Turn::General(turn.within(&X_PJ.rotation)) };
-                Placement { turn, translation: X_PJ.translation }
-            }
-            JointKind::Prismatic => {
-                let turn = if self.is_parallel { Turn::Parallel } else { Turn::General(X_PJ.rotation) };
-                Placement { turn, translation: X_PJ.translation + self.sliding * q }
-            }
-        }
-    }
-}
-
-/// What a joint does.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(crate) enum JointKind {
-    /// Turns about its axis.
-    Revolute,
-    /// Slides along its axis.
-    Prismatic,
 }
 
 /// A link of the URDF, posed in its body.
@@ -265,18 +196,7 @@ fn moving_joint(
         if joint.joint_type == JointType::Prismatic { JointKind::Prismatic } else { JointKind::Revolute };
     let limited = joint.joint_type != JointType::Continuous && joint.limit.lower < joint.limit.upper;
     let middle = limited.then_some(0.5 * (joint.limit.lower + joint.limit.upper));
-    Ok(TreeJoint {
-        name: joint.name.clone(),
-        kind,
-        parent,
-        X_PJ,
-        is_parallel: X_PJ.rotation == Matrix3::identity(),
-        axis,
-        turning: Axis::along(&axis),
-        sliding: X_PJ.rotation * axis,
-        middle,
-        mass,
-    })
+    Ok(TreeJoint::new(joint.name.clone(), kind, parent, X_PJ, axis, middle, mass))
 }
 
 fn link_mass(link: &urdf_rs::Link) -> Result<MassProperties, ModelError> {

@@ -25,6 +25,26 @@ impl Axis {
             None => Self::Oblique(*axis),
         }
     }
+
+    /// The axis in the frame in which the axes of its own are `R`.
+    #[inline]
+    pub(crate) fn within(&self, R: &Matrix3<f64>) -> Vector3<f64> {
+        match self {
+            Self::Coordinate(0, sign) => R.column(0) * *sign,
+            Self::Coordinate(1, sign) => R.column(1) * *sign,
+            Self::Coordinate(_, sign) => R.column(2) * *sign,
+            Self::Oblique(axis) => R * axis,
+        }
+    }
+
+    /// Product of a symmetric matrix and the axis.
+    #[inline]
+    pub(crate) fn times(&self, inner: &Symmetric) -> Vector3<f64> {
+        match self {
+            Self::Coordinate(i, sign) => inner.column(*i) * *sign,
+            Self::Oblique(axis) => inner.times(axis),
+        }
+    }
 }
 
 /// Rotation of a frame in an outer one.
@@ -50,7 +70,7 @@ impl Turn {
     }
 
     /// The inner axes in the frame in which the outer ones are `outer`.
-    #[inline]
+    #[inline(always)]
     pub(crate) fn within(&self, outer: &Matrix3<f64>) -> Matrix3<f64> {
         match *self {
             Self::Parallel => *outer,
