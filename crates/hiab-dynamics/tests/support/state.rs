@@ -75,12 +75,13 @@ pub fn check_close(quantity: &str, found: &[f64], expected: &[f64], bound: f64) 
     }
 }
 
-/// Central difference of `f` along `direction`.
+/// Central difference of fourth order of `f` along `direction`.
 pub fn difference(point: &[f64], direction: &[f64], f: impl Fn(&[f64]) -> Vec<f64>) -> Vec<f64> {
     let h = tolerance::DIFFERENCE_STEP;
     let moved = |s: f64| -> Vec<f64> { point.iter().zip(direction).map(|(p, d)| p + s * d).collect() };
-    let (after, before) = (f(&moved(h)), f(&moved(-h)));
-    after.iter().zip(before).map(|(a, b)| (a - b) / (2.0 * h)).collect()
+    let [before, near_before, near_after, after] = [-1.0, -0.5, 0.5, 1.0].map(|share| f(&moved(share * h)));
+    let slope = |i: usize| (8.0 * (near_after[i] - near_before[i]) - (after[i] - before[i])) / (6.0 * h);
+    (0..after.len()).map(slope).collect()
 }
 
 pub fn mass_matrix(model: &CraneModel, position: &[f64]) -> DMatrix<f64> {

@@ -23,8 +23,8 @@ pub const ROUNDING: f64 = 1e-11;
 /// Step of central differences, in units of the coordinate.
 pub const DIFFERENCE_STEP: f64 = 1e-5;
 
-/// Central differences, relative to the largest value: truncation 1e-10 times third derivatives of up to 1e3,
-/// rounding 1e-15 / 1e-5.
+/// Central differences, relative to the largest value: truncation of those of second order 1e-10/6 times third
+/// derivatives of up to 5e3, of those of fourth order 1e-20/480 times fifth ones, rounding 1e-15 / 1e-5.
 pub const DIFFERENCE: f64 = 1e-7;
 
 /// Energy after 800 steps of the fourth-order method, relative to the kinetic energy at the start: (0.5 ms)⁴ times
