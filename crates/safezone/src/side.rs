@@ -107,9 +107,7 @@ impl Braking {
         let (step, period) = (authority.velocity_change, planner.period());
         let width = position.width();
         let scale = position.min.abs().max(position.max.abs()).max(width);
-        // Half an ulp per step of a braking manoeuvre, and the roundings of one range.
-        let steps = (velocity / step).min(sqrt(2.0 * width / (step * period)));
-        let rounding = f64::EPSILON * (steps + 16.0) * scale;
+        let rounding = rounding(velocity / step, width / (step * period), scale);
         let reverse = authority.reverse_travel;
         let shape = planner.spec().shape;
         let stretched = planner.spec().timing == Timing::Stretched;
@@ -160,6 +158,12 @@ impl Braking {
         };
         braking.set_longest_stop(braking.distance(velocity));
         braking
+    }
+
+    /// What rounding may add to a braking manoeuvre of that `length` from a position of that `size` [rad or m].
+    pub(crate) fn rounding_over(&self, length: f64, size: f64) -> f64 {
+        let scale = larger(size, larger(self.width, self.limit.abs()));
+        rounding(f64::INFINITY, length / (self.step * self.period), scale)
     }
 
     /// Takes note of the distance that the largest velocity needs [rad or m].
@@ -252,4 +256,10 @@ impl Braking {
         let lag = if v2 >= v1 { self.climb.slope_at(v2 - v1) } else { self.brake.slope_at(v1 - v2) };
         self.period - lag
     }
+}
+
+/// Half an ulp of `scale` per step of a braking manoeuvre, and the roundings of one range: at most `steps`, and no more than
+/// make a distance of `length` times Δ·T.
+fn rounding(steps: f64, length: f64, scale: f64) -> f64 {
+    f64::EPSILON * (smaller(steps, sqrt(2.0 * length)) + 16.0) * scale
 }

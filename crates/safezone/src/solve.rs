@@ -35,12 +35,27 @@ impl Approach<'_> {
     pub(crate) fn max_velocity(self) -> f64 {
         let braking = self.braking;
         let highest = self.reachable.max;
-        if braking.is_far(self.position) && self.velocity <= braking.velocity {
+        let way_in = self.rounding_of_the_way_in();
+        if way_in == 0.0 && braking.is_far(self.position) && self.velocity <= braking.velocity {
             return highest;
         }
-        let room = braking.limit - braking.guard - self.position;
+        let room = braking.limit - braking.guard - way_in - self.position;
         let velocity = if braking.stretched { self.solve_stretched(room) } else { self.solve_fastest(room) };
         smaller(larger(velocity, self.brake), highest)
+    }
+
+    /// What rounding may add on the way from beyond the other limit to this one, since the guard counts the steps from that
+    /// limit on; 0 within the limits, and no more than half of the way to that limit, so that it is never out of reach
+    /// [rad or m].
+    #[inline]
+    fn rounding_of_the_way_in(&self) -> f64 {
+        let braking = self.braking;
+        let beyond = braking.limit - braking.width - self.position;
+        if beyond > 0.0 {
+            smaller(braking.rounding_over(braking.width + beyond, self.position.abs()), 0.5 * beyond)
+        } else {
+            0.0
+        }
     }
 
     /// Stopping distance from `velocity` and its slope [rad or m, s].
