@@ -229,11 +229,12 @@ pub fn table(rows: &[Row]) -> String {
         let rates = rates(&group);
         let _ = writeln!(
             text,
-            "- {}: worst seed {:.2} %, mean {:.2} %, interquartile mean {:.2} %",
+            "- {}: worst seed {:.2} %, mean {:.2} %, interquartile mean {:.2} %, {:.0} steps on average",
             group[0].candidate,
             100.0 * rates.iter().copied().fold(1.0, f64::min),
             100.0 * statistics::mean(&rates).unwrap_or(f64::NAN),
             100.0 * statistics::interquartile_mean(&rates).unwrap_or(f64::NAN),
+            group.iter().map(|row| row.steps.iter().sum::<u64>() as f64).sum::<f64>() / group.len() as f64,
         );
     }
     text
@@ -318,7 +319,10 @@ mod tests {
             lines[3],
             format!("| odd | 2 | 97.00 % | {rest}, not mastered) | 90 s | 25.0 % | 0 + 1 |")
         );
-        assert_eq!(lines[5], "- even: worst seed 98.00 %, mean 98.00 %, interquartile mean 98.00 %");
+        assert_eq!(
+            lines[5],
+            "- even: worst seed 98.00 %, mean 98.00 %, interquartile mean 98.00 %, 60 steps on average"
+        );
     }
 
     #[test]
