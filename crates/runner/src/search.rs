@@ -98,6 +98,13 @@ pub struct Row {
     pub judged: Summary,
 }
 
+impl Row {
+    /// Environment steps of all stages.
+    fn all_steps(&self) -> u64 {
+        self.steps.iter().sum()
+    }
+}
+
 impl Candidate {
     /// The base configuration with this candidate's changes and a seed.
     ///
@@ -227,6 +234,7 @@ pub fn table(rows: &[Row]) -> String {
     text.push('\n');
     for group in groups {
         let rates = rates(&group);
+        let steps: Vec<f64> = group.iter().map(|row| row.all_steps() as f64).collect();
         let _ = writeln!(
             text,
             "- {}: worst seed {:.2} %, mean {:.2} %, interquartile mean {:.2} %, {:.0} steps on average",
@@ -234,7 +242,7 @@ pub fn table(rows: &[Row]) -> String {
             100.0 * rates.iter().copied().fold(1.0, f64::min),
             100.0 * statistics::mean(&rates).unwrap_or(f64::NAN),
             100.0 * statistics::interquartile_mean(&rates).unwrap_or(f64::NAN),
-            group.iter().map(|row| row.steps.iter().sum::<u64>() as f64).sum::<f64>() / group.len() as f64,
+            statistics::mean(&steps).unwrap_or(f64::NAN),
         );
     }
     text
@@ -259,7 +267,7 @@ fn line(row: &Row) -> String {
         number(judged.time_to_reach_s.mean),
         1e3 * number(judged.at_success.tip_error_m.mean),
         1e3 * number(judged.at_success.tip_speed_m_s.mean),
-        row.steps.iter().sum::<u64>(),
+        row.all_steps(),
         steps.join(", "),
         row.seconds,
         100.0 * judged.intervention_rate,
@@ -275,7 +283,8 @@ pub fn page(path: &Path, out: &Path, table: &str) -> String {
     format!(
         "# What trains best\n\nThe candidates of `{path}`, which says what each changes. Each was trained through all \
          stages with every seed and judged without exploration on fresh episodes of orange. Training times are of the \
-         machine that this was written on, whatever else it did; violations are of the reference and of the actual \
+         machine that this was written on, whatever else it did, and of the last part of a stage that was stopped in \
+         between; violations are of the reference and of the actual \
          motion, in training and evaluation.\n\n`cargo xtask search --space {path} --out {out}` writes this page.\n\n{table}",
     )
 }
@@ -300,7 +309,7 @@ mod tests {
         Row {
             candidate: candidate.into(),
             seed,
-            steps: [10, 20, 30],
+            steps: [10, 20, 30 + seed],
             mastered: [true, true, seed == 0],
             seconds: 90.4,
             violations: Violations { reference: 0, actual: 1 },
@@ -313,15 +322,16 @@ mod tests {
         let rows = [row("odd", 0, 1.0), row("odd", 2, 0.97), row("even", 0, 0.98), row("even", 2, 0.98)];
         let table = table(&rows);
         let lines: Vec<&str> = table.lines().skip(2).collect();
-        let rest = "1.50 s | 40.0 mm, 80 mm/s | 60 (10, 20, 30";
-        assert_eq!(lines[0], format!("| even | 0 | 98.00 % | {rest}) | 90 s | 25.0 % | 0 + 1 |"));
+        let reached = "1.50 s | 40.0 mm, 80 mm/s";
+        let rest = "90 s | 25.0 % | 0 + 1 |";
+        assert_eq!(lines[0], format!("| even | 0 | 98.00 % | {reached} | 60 (10, 20, 30) | {rest}"));
         assert_eq!(
             lines[3],
-            format!("| odd | 2 | 97.00 % | {rest}, not mastered) | 90 s | 25.0 % | 0 + 1 |")
+            format!("| odd | 2 | 97.00 % | {reached} | 62 (10, 20, 32, not mastered) | {rest}")
         );
         assert_eq!(
             lines[5],
-            "- even: worst seed 98.00 %, mean 98.00 %, interquartile mean 98.00 %, 60 steps on average"
+            "- even: worst seed 98.00 %, mean 98.00 %, interquartile mean 98.00 %, 61 steps on average"
         );
     }
 

@@ -65,7 +65,7 @@ pub struct Training {
     learnt: Option<Means>,
 }
 
-/// Where the time of a training went \[s\]; for people, never part of what a seed determines.
+/// Where the time of a training went \[s\], since it was last resumed; for people, never part of what a seed determines.
 #[derive(Clone, Copy, Debug, Default, serde::Serialize)]
 struct TimeSpent {
     environment: f64,

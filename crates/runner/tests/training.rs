@@ -265,17 +265,24 @@ fn a_finished_stage_is_not_overwritten() {
     assert!(before == project.bytes("runs/a/purple/checkpoints/latest"));
 }
 
+/// The default discount, and the default configuration with 0.9 in its place.
+fn another_discount(project: &Project) -> (f64, String) {
+    let own = ConfigSpec::read(&project.path(runner::config::DEFAULT)).unwrap().learner.spec().discount;
+    let text = project.text(runner::config::DEFAULT).replace(&format!("discount: {own}"), "discount: 0.9");
+    (own, text)
+}
+
 #[test]
 fn a_run_is_not_resumed_with_another_configuration_or_seed() {
     let project = small_project();
     check_success(&train(&project, "--stage purple --run a --episodes 4"));
-    let other = project.text(runner::config::DEFAULT).replace("discount: 0.95", "discount: 0.9");
+    let (own, other) = another_discount(&project);
     project.write("other.ron", other.replace("reach_distance: 0.05", "reach_distance: 0.06"));
     let refused = train(&project, "--stage purple --run a --resume --config other.ron");
     check_refusal(
         &refused,
         &[
-            "learner.discount: the run has 0.95, wanted is 0.9;",
+            &format!("learner.discount: the run has {own}, wanted is 0.9;"),
             "task.reach_distance: the run has 0.05, wanted is 0.06",
         ],
     );
@@ -299,8 +306,7 @@ fn a_run_is_not_resumed_with_a_crane_of_other_limits() {
 #[test]
 fn what_a_run_was_begun_with_may_be_given_again_and_goes_on_in_the_next_stage() {
     let project = small_project();
-    project
-        .write("mine.ron", project.text(runner::config::DEFAULT).replace("discount: 0.95", "discount: 0.9"));
+    project.write("mine.ron", another_discount(&project).1);
     let given = "--run a --seed 5 --config mine.ron";
     check_success(&train(&project, &format!("--stage purple {given} --episodes 4")));
     check_success(&train(&project, &format!("--stage purple {given} --resume --episodes 5")));
