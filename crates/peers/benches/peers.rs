@@ -9,7 +9,7 @@ use std::hint::black_box;
 use criterion::{Criterion, criterion_group, criterion_main};
 use jbtg::Timing;
 use peers::{RsRuckig, Ruckig, TELESCOPE, zone};
-use safezone::{BrakingTable, Side};
+use safezone::{BrakingTable, Samples, Side};
 
 const PERIOD: f64 = 0.05;
 
@@ -71,10 +71,12 @@ fn safe_range(c: &mut Criterion) {
         let closed = zone(TELESCOPE, timing, PERIOD);
         let table = BrakingTable::build(closed.planner()).expect("few knots");
         let tabled = safezone::SafeZone::new(*closed.planner(), table).expect("the table is of this planner");
+        let mut samples = Samples::default();
+        let sampled = safezone::SafeZone::sampled(*closed.planner(), &mut samples).expect("room to move");
         for (case, position, velocity) in
             [("free", 0.30, 0.05), ("near_limit", 0.492, 0.10), ("turning", 0.4999, 0.002)]
         {
-            for (source, zone) in [("closed_form", &closed), ("table", &tabled)] {
+            for (source, zone) in [("closed_form", &closed), ("table", &tabled), ("samples", &sampled)] {
                 group.bench_function(format!("{name}_{source}/{case}"), |b| {
                     b.iter(|| zone.range(black_box(position), black_box(velocity)));
                 });

@@ -7,7 +7,7 @@ use std::hint::black_box;
 
 use criterion::{Bencher, Criterion, criterion_group, criterion_main};
 use jbtg::{Interval, Limits, Planner, PlannerSpec, Shape, SymmetricLimits, Timing};
-use safezone::{BrakingTable, Request, SafeZone, Side};
+use safezone::{BrakingTable, Request, SafeZone, Samples, Side};
 
 const LONG: Interval = Interval::new(0.14, 0.50);
 /// Two braking steps wide, so that both limits are near wherever the joint is.
@@ -22,14 +22,20 @@ fn planner(position: Interval, shape: Shape, timing: Timing) -> Planner {
     Planner::try_from(PlannerSpec { limits, shape, timing, period: 0.05 }).expect("the paper's period")
 }
 
-fn closed_form(position: Interval, shape: Shape, timing: Timing) -> SafeZone<'static> {
-    SafeZone::closed_form(planner(position, shape, timing)).expect("room to move")
+fn closed_form(planner: Planner, _: &mut Samples) -> SafeZone<'_> {
+    SafeZone::closed_form(planner).expect("room to move")
 }
 
-fn with_table(position: Interval, shape: Shape, timing: Timing) -> SafeZone<'static> {
-    let planner = planner(position, shape, timing);
+fn with_samples(planner: Planner, samples: &mut Samples) -> SafeZone<'_> {
+    SafeZone::sampled(planner, samples).expect("room to move")
+}
+
+fn with_table(planner: Planner, _: &mut Samples) -> SafeZone<'_> {
     SafeZone::new(planner, BrakingTable::build(&planner).expect("few knots")).expect("its own table")
 }
+
+/// One way to make a zone.
+type Zone = fn(Planner, &mut Samples) -> SafeZone<'_>;
 
 /// SplitMix64, uniform in [0, 1).
 fn noise(state: &mut u64) -> f64 {
@@ -83,15 +89,17 @@ fn range(c: &mut Criterion) {
     use Shape::{SineQuintic, Smoothstep};
     use Timing::{Fastest, Stretched};
     let mut group = c.benchmark_group("range");
-    let long = closed_form(LONG, Smoothstep, Stretched);
+    let long = SafeZone::closed_form(planner(LONG, Smoothstep, Stretched)).expect("room to move");
     group.bench_function("far", |b| time_ranges(b, &long, &[(0.3, 0.1)]));
     group.bench_function("near_upper", |b| time_ranges(b, &long, &[(0.497, 0.05)]));
-    let cases = [("closed_form", closed_form as fn(_, _, _) -> _), ("table", with_table)];
+    let cases: [(_, Zone); 3] =
+        [("closed_form", closed_form), ("table", with_table), ("samples", with_samples)];
     for (distances, zone) in cases {
-        let short = zone(SHORT, Smoothstep, Stretched);
+        let [mut samples, mut more] = [Samples::default(), Samples::default()];
+        let short = zone(planner(SHORT, Smoothstep, Stretched), &mut samples);
         let states = adversarial(&short);
         group.bench_function(format!("worst/both_limits/{distances}"), |b| time_ranges(b, &short, &states));
-        let long = zone(LONG, Smoothstep, Stretched);
+        let long = zone(planner(LONG, Smoothstep, Stretched), &mut more);
         let states = braking(&long);
         group.bench_function(format!("worst/braking/{distances}"), |b| time_ranges(b, &long, &states));
         for (name, shape, timing) in [
@@ -99,7 +107,8 @@ fn range(c: &mut Criterion) {
             ("sine", SineQuintic, Stretched),
             ("sine_fastest", SineQuintic, Fastest),
         ] {
-            let (long, short) = (zone(LONG, shape, timing), zone(SHORT, shape, timing));
+            let long = zone(planner(LONG, shape, timing), &mut samples);
+            let short = zone(planner(SHORT, shape, timing), &mut more);
             let states = adversarial(&long);
             group.bench_function(format!("{name}/{distances}"), |b| time_ranges(b, &long, &states));
             let states = adversarial(&short);
@@ -112,7 +121,8 @@ fn range(c: &mut Criterion) {
 }
 
 fn command(c: &mut Criterion) {
-    let zone = with_table(LONG, Shape::Smoothstep, Timing::Stretched);
+    let mut samples = Samples::default();
+    let zone = with_table(planner(LONG, Shape::Smoothstep, Timing::Stretched), &mut samples);
     let states = adversarial(&zone);
     let mut group = c.benchmark_group("command");
     for (name, request) in [("action", Request::Action(0.7)), ("missing", Request::Missing)] {

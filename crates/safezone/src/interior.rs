@@ -69,16 +69,23 @@ impl Approach<'_> {
         if self.velocity >= braking.brake.ramps_only {
             return lowest;
         }
-        let travel = larger(kept - self.position, braking.distance(self.velocity));
-        let turning = &braking.turning;
-        // A·T²-like scale: every turning point is a multiple of it that depends on where in the pulse it lies.
-        let scale = self.velocity * sqrt(self.velocity * turning.rising_per_acceleration);
-        let change = self.velocity * turning.change(travel / scale);
+        let change = match self.sampled {
+            Some(sampled) => sampled.turns.change(self.velocity, kept - self.position),
+            None => self.change_turning_within(larger(kept - self.position, braking.distance(self.velocity))),
+        };
         if change < braking.brake.ramps_only {
             smaller(larger(self.velocity - change, lowest), self.brake)
         } else {
             lowest
         }
+    }
+
+    /// The largest change of a step without a cruise that turns within `travel`, in closed form.
+    fn change_turning_within(self, travel: f64) -> f64 {
+        let turning = &self.braking.turning;
+        // A·T²-like scale: every turning point is a multiple of it that depends on where in the pulse it lies.
+        let scale = self.velocity * sqrt(self.velocity * turning.rising_per_acceleration);
+        self.velocity * turning.change(travel / scale)
     }
 }
 
@@ -88,7 +95,7 @@ impl Turning {
     ///
     /// `travel` is in multiples of v·√(v·T/A) with v that velocity and T/A the rising ramp's duration per acceleration, and at
     /// least what braking to zero covers.
-    fn change(&self, travel: f64) -> f64 {
+    pub(crate) fn change(&self, travel: f64) -> f64 {
         let ramp = Ramp::at(self.shape, 1.0);
         if travel >= ramp.advance / (ramp.gain * sqrt(ramp.gain)) {
             self.change_turning_while_rising(travel)

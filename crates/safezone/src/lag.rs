@@ -87,6 +87,15 @@ impl Lag {
         }
     }
 
+    /// How far chords over changes `spacing` apart lie above the lag at most [rad or m].
+    ///
+    /// What two terms whose curvatures bound the lag's add: the power's, which is largest over the first chord, and the
+    /// quadratic one's. Where the lag's slope falls its chord is lower.
+    pub(crate) fn sag(&self, spacing: f64) -> f64 {
+        let power = spacing * self.mean_of_ramps * sqrt(spacing * self.per_ramps_only);
+        4.0 / 27.0 * power + 0.25 * self.half_growth * (spacing * spacing)
+    }
+
     #[inline]
     fn ramp_share(&self, change: f64) -> f64 {
         larger(sqrt(change * self.per_ramps_only), MIN_RAMP_SHARE)

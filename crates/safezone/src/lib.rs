@@ -36,9 +36,11 @@ mod math;
 mod range;
 #[cfg(feature = "build")]
 mod ron_form;
+mod sampled;
 mod side;
 mod solve;
 mod table;
+mod turns;
 mod zone;
 
 #[cfg(feature = "build")]
@@ -47,6 +49,7 @@ pub use command::{Command, FailSafeReason, Request, Source};
 pub use range::{RangeStatus, SafeRange};
 #[cfg(feature = "build")]
 pub use ron_form::ParseError;
+pub use sampled::Samples;
 pub use side::Side;
 pub use table::{BrakingTable, Knot, SCHEMA, TableError, TableParts};
 pub use zone::{SafeZone, ZoneError};

@@ -4,6 +4,7 @@ use jbtg::Interval;
 
 use crate::curve::Curve;
 use crate::math::{larger, smaller};
+use crate::sampled::Sampled;
 use crate::side::{Braking, Line};
 
 /// Most Newton steps; each that leaves its bracket halves it, so that these suffice for the whole of double precision.
@@ -15,6 +16,8 @@ pub(crate) struct Approach<'a> {
     pub(crate) braking: &'a Braking,
     /// The table that braking distances are read from, if not their closed form.
     pub(crate) table: Option<&'a Curve<'a>>,
+    /// Samples of the steps, if the range is taken from them.
+    pub(crate) sampled: Option<&'a Sampled>,
     /// Position [rad or m].
     pub(crate) position: f64,
     /// Velocity [rad/s or m/s].
@@ -40,7 +43,11 @@ impl Approach<'_> {
             return highest;
         }
         let room = braking.limit - braking.guard - way_in - self.position;
-        let velocity = if braking.stretched { self.solve_stretched(room) } else { self.solve_fastest(room) };
+        let velocity = match self.sampled {
+            Some(sampled) => sampled.max_velocity(self.velocity, room),
+            None if braking.stretched => self.solve_stretched(room),
+            None => self.solve_fastest(room),
+        };
         smaller(larger(velocity, self.brake), highest)
     }
 

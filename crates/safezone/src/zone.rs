@@ -4,6 +4,7 @@ use jbtg::{Interval, Planner};
 
 use crate::math::{larger, smaller};
 use crate::range::{RangeStatus, SafeRange};
+use crate::sampled::Samples;
 use crate::side::{Braking, Side};
 use crate::solve::Approach;
 use crate::table::{BrakingTable, subdivisions};
@@ -40,6 +41,7 @@ pub struct SafeZone<'a> {
     table: Option<BrakingTable<'a>>,
     upper: Braking,
     lower: Braking,
+    samples: Option<&'a Samples>,
 }
 
 impl SafeZone<'static> {
@@ -72,6 +74,20 @@ impl<'a> SafeZone<'a> {
         Self::assemble(planner, Some(table))
     }
 
+    /// A zone whose ranges take constant time with [`Timing::Fastest`](jbtg::Timing) too: from samples of steps and braking, on
+    /// the safe side, in memory of the caller's.
+    ///
+    /// The ranges lie within those of [`SafeZone::closed_form`], the same with [`Timing::Stretched`](jbtg::Timing).
+    /// `docs/guarantee.md` says how much narrower they are.
+    ///
+    /// # Errors
+    /// [`ZoneError::Narrow`], as for [`SafeZone::new`].
+    pub fn sampled(planner: Planner, samples: &'a mut Samples) -> Result<Self, ZoneError> {
+        let zone = Self::assemble(planner, None)?;
+        samples.fill(&planner, &zone.upper, &zone.lower);
+        Ok(Self { samples: Some(samples), ..zone })
+    }
+
     fn assemble(planner: Planner, table: Option<BrakingTable<'a>>) -> Result<Self, ZoneError> {
         let mut upper = Braking::new(&planner, Side::Upper);
         let mut lower = Braking::new(&planner, Side::Lower);
@@ -83,7 +99,7 @@ impl<'a> SafeZone<'a> {
         if guard >= 0.5 * upper.width {
             return Err(ZoneError::Narrow { width: upper.width, guard });
         }
-        Ok(Self { planner, table, upper, lower })
+        Ok(Self { planner, table, upper, lower, samples: None })
     }
 
     /// The planner whose steps the ranges are made for.
@@ -132,7 +148,7 @@ impl<'a> SafeZone<'a> {
     /// `velocity` [rad/s or m/s], both taken at the start of the step, where the acceleration is zero.
     ///
     /// Total: never empty, whatever the state; [`SafeRange::status`] says what it can promise. In constant time with
-    /// [`Timing::Stretched`](jbtg::Timing).
+    /// [`Timing::Stretched`](jbtg::Timing) or [samples](SafeZone::sampled).
     #[must_use]
     #[inline]
     pub fn range(&self, position: f64, velocity: f64) -> SafeRange {
@@ -180,11 +196,15 @@ impl<'a> SafeZone<'a> {
         brake: f64,
     ) -> Approach<'_> {
         let table = self.table.as_ref().map(|table| table.curve(side));
+        let sampled = self.samples.and_then(|samples| samples.side(side));
         match side {
-            Side::Upper => Approach { braking: &self.upper, table, position, velocity, reachable, brake },
+            Side::Upper => {
+                Approach { braking: &self.upper, table, sampled, position, velocity, reachable, brake }
+            }
             Side::Lower => Approach {
                 braking: &self.lower,
                 table,
+                sampled,
                 position: -position,
                 velocity: -velocity,
                 reachable: reachable.mirrored(),

@@ -6,7 +6,7 @@
 use jbtg::{Planner, PlannerSpec};
 use safezone::{
     BrakingTable, BuildError, Command, FailSafeReason, Knot, ParseError, RangeStatus, Request, SafeRange,
-    SafeZone, Side, Source, TableError, TableParts, ZoneError,
+    SafeZone, Samples, Side, Source, TableError, TableParts, ZoneError,
 };
 
 #[test]
@@ -20,6 +20,8 @@ fn functions_keep_their_signatures() {
     type Table = BrakingTable<'static>;
     let _: fn(Planner) -> Result<Zone, ZoneError> = SafeZone::closed_form;
     let _: fn(Planner, Table) -> Result<Zone, ZoneError> = SafeZone::new;
+    let _: fn(Planner, &'static mut Samples) -> Result<Zone, ZoneError> = SafeZone::sampled;
+    let _: Samples = Samples::default();
     let _: fn(&Zone) -> &Planner = Zone::planner;
     let _: fn(&Zone) -> Option<&Table> = Zone::table;
     let _: fn(&Zone, Side) -> f64 = Zone::guard;

@@ -12,6 +12,7 @@ mod peers;
 mod properties;
 mod recovery;
 mod rounding;
+mod sampled;
 mod table_file;
 mod telescope;
 mod tolerance;

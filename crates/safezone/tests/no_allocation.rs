@@ -2,7 +2,7 @@
 
 use allocation_counter::measure;
 use jbtg::{Shape, Timing};
-use safezone::{BrakingTable, Request, SafeZone, Side, TableParts};
+use safezone::{BrakingTable, Request, SafeZone, Samples, Side, TableParts};
 
 use crate::telescope::{ALL, planner};
 
@@ -26,8 +26,10 @@ fn nothing_on_the_way_of_a_control_loop_allocates() {
         };
         let allocated = measure(|| {
             let table = BrakingTable::try_from(parts).unwrap();
+            let mut samples = Samples::default();
             let closed_form = SafeZone::closed_form(planner).unwrap();
-            for zone in [closed_form, SafeZone::new(planner, table).unwrap()] {
+            let sampled = SafeZone::sampled(planner, &mut samples).unwrap();
+            for zone in [closed_form, SafeZone::new(planner, table).unwrap(), sampled] {
                 let (mut position, mut velocity) = (0.3, 0.0);
                 for i in 0..100 {
                     let request =

@@ -3,7 +3,7 @@
 use std::f64::consts::PI;
 
 use jbtg::{Interval, Planner, Shape, Timing};
-use safezone::{BrakingTable, RangeStatus, SafeRange, SafeZone, Side};
+use safezone::{BrakingTable, RangeStatus, SafeRange, SafeZone, Samples, Side};
 
 use crate::telescope::{ALL, POSITION, planner};
 use crate::tolerance;
@@ -118,7 +118,10 @@ fn ours_stops_at_the_limit_and_never_beyond() {
     for (shape, timing) in ALL {
         let planner = planner(shape, timing);
         let table = BrakingTable::build(&planner).unwrap();
-        for zone in [SafeZone::closed_form(planner).unwrap(), SafeZone::new(planner, table).unwrap()] {
+        let mut samples = Samples::default();
+        let closed_form = SafeZone::closed_form(planner).unwrap();
+        let sampled = SafeZone::sampled(planner, &mut samples).unwrap();
+        for zone in [closed_form, SafeZone::new(planner, table).unwrap(), sampled] {
             for start in starts() {
                 let overrun = push_safely(&zone, start);
                 let room = if shape == Shape::Smoothstep { 1e-12 } else { 1e-7 }; // its guard

@@ -3,7 +3,7 @@
 use jbtg::strategies::planners;
 use jbtg::{Interval, Limits, LimitsSpec, Planner, PlannerSpec, Shape, Timing};
 use proptest::prelude::*;
-use safezone::{BrakingTable, SafeZone};
+use safezone::{BrakingTable, SafeZone, Samples};
 
 use crate::adversary::{ADVERSARIES, adversaries, run, safe_state};
 
@@ -63,6 +63,18 @@ proptest! {
     ) {
         let Ok(table) = BrakingTable::build(&planner) else { return Ok(()) };
         let Ok(zone) = SafeZone::new(planner, table) else { return Ok(()) };
+        let result = run(&zone, safe_state(&zone, start), adversary, STEPS);
+        prop_assert!(result.is_ok(), "{}", result.unwrap_err());
+    }
+
+    #[test]
+    fn no_policy_leaves_any_limit_with_samples(
+        planner in planners(),
+        start in (shares(), shares()),
+        adversary in (adversaries(), any::<u64>()),
+    ) {
+        let mut samples = Samples::default();
+        let Ok(zone) = SafeZone::sampled(planner, &mut samples) else { return Ok(()) };
         let result = run(&zone, safe_state(&zone, start), adversary, STEPS);
         prop_assert!(result.is_ok(), "{}", result.unwrap_err());
     }

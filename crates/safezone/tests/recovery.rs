@@ -4,7 +4,7 @@ use jbtg::strategies::planners;
 use jbtg::{Direction, Interval, Limits, Planner, PlannerSpec, Shape, SymmetricLimits, Timing};
 use proptest::num::f64::ANY;
 use proptest::prelude::*;
-use safezone::{BrakingTable, FailSafeReason, RangeStatus, Request, SafeZone, Source};
+use safezone::{BrakingTable, FailSafeReason, RangeStatus, Request, SafeZone, Samples, Source};
 
 use crate::adversary::safe_state;
 use crate::tolerance::LIMIT;
@@ -30,7 +30,10 @@ fn the_way_back_from_afar_stops_at_the_other_limit() {
         let shape = Shape::Smoothstep;
         let planner = Planner::try_from(PlannerSpec { limits, shape, timing, period: 0.05 }).unwrap();
         let table = BrakingTable::build(&planner).unwrap();
-        for zone in [SafeZone::new(planner, table).unwrap(), SafeZone::closed_form(planner).unwrap()] {
+        let mut samples = Samples::default();
+        let closed_form = SafeZone::closed_form(planner).unwrap();
+        let sampled = SafeZone::sampled(planner, &mut samples).unwrap();
+        for zone in [SafeZone::new(planner, table).unwrap(), closed_form, sampled] {
             for (start, action) in [(0.31, -1.0), (-0.3, 1.0)] {
                 let (mut position, mut velocity) = (start, 0.0);
                 for step in 0..200 {

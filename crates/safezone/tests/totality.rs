@@ -4,7 +4,7 @@ use jbtg::strategies::planners;
 use jbtg::{Interval, Limits, LimitsSpec, Planner, PlannerSpec};
 use proptest::num::f64::ANY;
 use proptest::prelude::*;
-use safezone::{BrakingTable, Knot, RangeStatus, Request, SafeZone, Side, TableError, TableParts};
+use safezone::{BrakingTable, Knot, RangeStatus, Request, SafeZone, Samples, Side, TableError, TableParts};
 
 /// Any bit pattern: NaN, infinities, zeros and subnormal numbers included, and the largest ones more often than chance.
 fn numbers() -> impl Strategy<Value = f64> {
@@ -85,6 +85,8 @@ proptest! {
         if let Ok(table) = BrakingTable::build(&planner) {
             check_total(&SafeZone::new(planner, table).expect("its own table"), state, request)?;
         }
+        let mut samples = Samples::default();
+        check_total(&SafeZone::sampled(planner, &mut samples).expect("room to move"), state, request)?;
     }
 
     #[test]
@@ -92,10 +94,13 @@ proptest! {
         planner in any_planner(), state in (numbers(), numbers()), share in 0.0..=1.0, request in requests(),
     ) {
         let Some(planner) = planner else { return Ok(()) };
-        let Ok(zone) = SafeZone::closed_form(planner) else { return Ok(()) };
-        check_total(&zone, state, request)?;
+        let mut samples = Samples::default();
         let limits = planner.limits().position();
-        check_total(&zone, (limits.min + share * limits.width(), state.1), request)?;
+        for zone in [SafeZone::closed_form(planner), SafeZone::sampled(planner, &mut samples)] {
+            let Ok(zone) = zone else { continue };
+            check_total(&zone, state, request)?;
+            check_total(&zone, (limits.min + share * limits.width(), state.1), request)?;
+        }
     }
 
     #[test]

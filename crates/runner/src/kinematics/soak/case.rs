@@ -1,6 +1,6 @@
 //! One case: a joint, and spells of adversaries between which limits change and motions start anew.
 
-use safezone::SafeZone;
+use safezone::{SafeZone, Samples};
 
 use super::adversary::Adversary;
 use super::judge::{self, Fault, Trust};
@@ -16,7 +16,10 @@ const LONGEST_SPELL: u64 = 512;
 pub(super) fn run(seed: u64, index: u64, steps: u64, act: &impl Act, witness: &mut impl Witness) -> Tally {
     let mut random = Random::of_case(seed, index);
     let mut tally = Tally::default();
-    let zone = setting::zone(&mut random, &mut tally);
+    // Memory for the zones that sample; once it is used up the others solve.
+    let mut samples: [Samples; 16] = Default::default();
+    let mut store = samples.iter_mut();
+    let zone = setting::zone(&mut random, &mut tally, &mut store);
     witness.zone(&zone);
     let state = setting::start(&zone, &mut random);
     let mut joint = Joint { zone, state, trust: Trust::New };
@@ -32,7 +35,7 @@ pub(super) fn run(seed: u64, index: u64, steps: u64, act: &impl Act, witness: &m
         }
         match random.below(16) {
             0..4 => {
-                if let Some(zone) = setting::changed(&joint.zone, &mut random, &mut tally) {
+                if let Some(zone) = setting::changed(&joint.zone, &mut random, &mut tally, &mut store) {
                     witness.zone(&zone);
                     tally.changes += 1;
                     joint.zone = zone;
@@ -50,14 +53,14 @@ pub(super) fn run(seed: u64, index: u64, steps: u64, act: &impl Act, witness: &m
 }
 
 /// A joint in motion.
-struct Joint {
-    zone: SafeZone<'static>,
+struct Joint<'a> {
+    zone: SafeZone<'a>,
     /// Position [rad or m] and velocity [rad/s or m/s].
     state: (f64, f64),
     trust: Trust,
 }
 
-impl Joint {
+impl Joint<'_> {
     /// One step of the adversary's choice, judged.
     #[inline]
     fn step(

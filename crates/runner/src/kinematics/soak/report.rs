@@ -25,6 +25,7 @@ pub(super) struct Report {
     steps_per_case: u64,
     joints: u64,
     joints_with_table: u64,
+    joints_with_samples: u64,
     refused_draws: u64,
     limit_changes: u64,
     narrowed_steps: u64,
@@ -55,6 +56,7 @@ impl Report {
             steps_per_case: CASE_STEPS,
             joints: tally.zones,
             joints_with_table: tally.zones_with_table,
+            joints_with_samples: tally.zones_with_samples,
             refused_draws: tally.refused,
             limit_changes: tally.changes,
             narrowed_steps: tally.narrowed,
@@ -80,7 +82,8 @@ impl fmt::Display for Report {
             "worst excess      position {position:.1e}, velocity {velocity:.1e}, \
              acceleration {acceleration:.1e}, jerk {jerk:.1e} of the interval's width"
         )?;
-        writeln!(f, "joints            {} ({} with a table)", self.joints, self.joints_with_table)?;
+        let (table, samples) = (self.joints_with_table, self.joints_with_samples);
+        writeln!(f, "joints            {} ({table} with a table, {samples} with samples)", self.joints)?;
         writeln!(f, "limit changes     {} while moving", self.limit_changes)?;
         writeln!(f, "steps narrowed    {}, on a way back {}", self.narrowed_steps, self.recovering_steps)?;
         let nanoseconds = 1e9 * self.seconds * self.threads as f64 / self.steps as f64;

@@ -1,7 +1,9 @@
 //! Joints: random limits, periods, shapes and timings, what they change into, and where their motion starts.
 
+use std::slice::IterMut;
+
 use jbtg::{Direction, Interval, Limits, LimitsSpec, Planner, PlannerSpec, Shape, Timing};
-use safezone::{BrakingTable, SafeZone, Side};
+use safezone::{BrakingTable, SafeZone, Samples, Side};
 
 use super::random::Random;
 use super::tally::Tally;
@@ -10,13 +12,17 @@ use super::tally::Tally;
 const MOST_KNOTS: f64 = 1024.0;
 
 /// A joint of any kind: its limits over six decades, its period 1 ms to 1 s. What the planner or the zone refuses is
-/// counted and drawn again.
-pub(super) fn zone(random: &mut Random, tally: &mut Tally) -> SafeZone<'static> {
+/// counted and drawn again. A zone that samples takes its memory from `store`.
+pub(super) fn zone<'a>(
+    random: &mut Random,
+    tally: &mut Tally,
+    store: &mut IterMut<'a, Samples>,
+) -> SafeZone<'a> {
     loop {
         let (limits, period) = if random.below(4) == 0 { independent(random) } else { proportionate(random) };
         let shape = if random.below(2) == 0 { Shape::Smoothstep } else { Shape::SineQuintic };
         let timing = if random.below(2) == 0 { Timing::Stretched } else { Timing::Fastest };
-        match assemble(random, tally, (limits, shape, timing, period)) {
+        match assemble(random, tally, store, (limits, shape, timing, period)) {
             Some(zone) => return zone,
             None => tally.refused += 1,
         }
@@ -24,11 +30,12 @@ pub(super) fn zone(random: &mut Random, tally: &mut Tally) -> SafeZone<'static> 
 }
 
 /// The same joint with other limits, which take over at the start of a period; none if they were refused.
-pub(super) fn changed(
+pub(super) fn changed<'a>(
     zone: &SafeZone<'_>,
     random: &mut Random,
     tally: &mut Tally,
-) -> Option<SafeZone<'static>> {
+    store: &mut IterMut<'a, Samples>,
+) -> Option<SafeZone<'a>> {
     let PlannerSpec { limits, shape, timing, period } = *zone.planner().spec();
     let mut spec = LimitsSpec::from(limits);
     let narrower = random.below(2) == 0;
@@ -45,21 +52,29 @@ pub(super) fn changed(
             *end += random.uniform(-0.5, 0.5) * width;
         }
     }
-    let zone = assemble(random, tally, (spec, shape, timing, period));
+    let zone = assemble(random, tally, store, (spec, shape, timing, period));
     tally.refused += u64::from(zone.is_none());
     zone
 }
 
-fn assemble(
+/// A zone of any kind: half of them with a table, a quarter of the fastest ones from samples.
+fn assemble<'a>(
     random: &mut Random,
     tally: &mut Tally,
+    store: &mut IterMut<'a, Samples>,
     (limits, shape, timing, period): (LimitsSpec, Shape, Timing, f64),
-) -> Option<SafeZone<'static>> {
+) -> Option<SafeZone<'a>> {
     let limits = Limits::try_from(limits).ok()?;
     let planner = Planner::try_from(PlannerSpec { limits, shape, timing, period }).ok()?;
-    let zone = if random.below(2) == 0 && knots(&planner) <= MOST_KNOTS {
+    let kind = random.below(4);
+    let mut samples = if kind == 2 && timing == Timing::Fastest { store.next() } else { None };
+    let zone = if kind < 2 && knots(&planner) <= MOST_KNOTS {
         let zone = SafeZone::new(planner, BrakingTable::build(&planner).ok()?).ok()?;
         tally.zones_with_table += 1;
+        zone
+    } else if let Some(samples) = samples.take() {
+        let zone = SafeZone::sampled(planner, samples).ok()?;
+        tally.zones_with_samples += 1;
         zone
     } else {
         SafeZone::closed_form(planner).ok()?

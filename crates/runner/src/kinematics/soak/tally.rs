@@ -82,6 +82,8 @@ pub struct Tally {
     pub zones: u64,
     /// Those of them whose braking distances came from a table.
     pub zones_with_table: u64,
+    /// Those whose ranges came from samples.
+    pub zones_with_samples: u64,
     /// Draws that the planner or the zone refused.
     pub refused: u64,
     /// Changes of limits while the joint moved.
@@ -137,6 +139,7 @@ impl Tally {
             first_faulty_case: [self.first_faulty_case, other.first_faulty_case].into_iter().flatten().min(),
             zones: self.zones + other.zones,
             zones_with_table: self.zones_with_table + other.zones_with_table,
+            zones_with_samples: self.zones_with_samples + other.zones_with_samples,
             refused: self.refused + other.refused,
             changes: self.changes + other.changes,
             narrowed: self.narrowed + other.narrowed,

@@ -58,7 +58,8 @@ fn the_zone_as_it_is_breaks_no_promise() {
 #[test]
 fn every_kind_of_case_is_there() {
     let tally = tally(STEPS, 1, 1, &Zone);
-    let counts = [tally.zones_with_table, tally.zones - tally.zones_with_table, tally.refused, tally.changes];
+    let (table, samples) = (tally.zones_with_table, tally.zones_with_samples);
+    let counts = [table, samples, tally.zones - table - samples, tally.refused, tally.changes];
     assert!(counts.iter().all(|count| *count > 0), "{tally:?}");
     assert!(tally.narrowed > STEPS / 10 && tally.recovering > STEPS / 1000, "{tally:?}");
     assert!(tally.recovering < STEPS / 2, "{tally:?}");

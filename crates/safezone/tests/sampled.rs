@@ -1,0 +1,78 @@
+//! The samples of [`Timing::Fastest`] against the closed form: inside it, and nearly as wide.
+
+use jbtg::Direction;
+use jbtg::strategies::{decades, planners};
+use proptest::prelude::*;
+use safezone::{SafeZone, Samples, Side};
+
+use crate::adversary::safe_state;
+use crate::telescope;
+use crate::tolerance;
+
+/// Checks that the sampled range lies in the closed form's and returns the larger share of Δ that an end lacks.
+fn share_given_away(
+    (closed, sampled): (&SafeZone<'_>, &SafeZone<'_>),
+    (position, velocity): (f64, f64),
+) -> Result<f64, TestCaseError> {
+    let planner = closed.planner();
+    let (exact, found) = (closed.range(position, velocity), sampled.range(position, velocity));
+    let at = format!("from ({position:e}, {velocity:e}): {found:?} for {exact:?}");
+    prop_assert!(found.min <= found.max && found.contains(found.brake), "{at}");
+    prop_assert!(found.contains(exact.brake) && found.brake == exact.brake, "{at}");
+    prop_assert_eq!(found.status, exact.status, "{}", at);
+    let mut worst = 0.0_f64;
+    for (lacking, side, direction) in [
+        (exact.max - found.max, Side::Upper, Direction::Decreasing),
+        (found.min - exact.min, Side::Lower, Direction::Increasing),
+    ] {
+        let authority = planner.authority(direction);
+        let step = authority.velocity_change;
+        // What the closed form's own residual makes of a velocity.
+        let overshoot = authority.reverse_travel * step;
+        let rounding = (closed.guard(side) - 2.0 * overshoot).max(0.0) / planner.period();
+        prop_assert!(lacking >= -200.0 * rounding - 1e-12 * step, "{side:?} {at}: {lacking:e} beyond");
+        worst = worst.max((lacking - 200.0 * rounding) / step);
+    }
+    Ok(worst)
+}
+
+fn shares() -> impl Strategy<Value = f64> {
+    prop_oneof![2 => Just(0.0), 2 => Just(1.0), 2 => 0.0..=1.0, 1 => decades(-9.0, 0.0), 1 => decades(-9.0, 0.0).prop_map(|share| 1.0 - share)]
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig { max_global_rejects: u32::MAX, ..ProptestConfig::with_cases(1000) })]
+
+    #[test]
+    fn a_sampled_range_lies_in_the_closed_form_s_and_is_nearly_as_wide(
+        planner in planners(),
+        starts in prop::collection::vec((shares(), shares()), 20),
+    ) {
+        let mut samples = Samples::default();
+        let Ok(closed) = SafeZone::closed_form(planner) else { return Ok(()) };
+        let sampled = SafeZone::sampled(planner, &mut samples).expect("as much room");
+        for start in starts {
+            let share = share_given_away((&closed, &sampled), safe_state(&closed, start))?;
+            prop_assert!(share <= tolerance::SAMPLES, "{share} of a braking step from {start:?}");
+        }
+    }
+}
+
+#[test]
+fn samples_of_equal_ramps_give_away_less() {
+    for (shape, timing) in telescope::ALL {
+        let mut samples = Samples::default();
+        let planner = telescope::planner(shape, timing);
+        let closed = SafeZone::closed_form(planner).unwrap();
+        let sampled = SafeZone::sampled(planner, &mut samples).unwrap();
+        let mut worst = 0.0_f64;
+        for i in 0..=1000 {
+            for j in 0..=300 {
+                let start = (f64::from(i) / 1000.0, 1.0 - 0.3 * f64::from(j) / 300.0);
+                let share = share_given_away((&closed, &sampled), safe_state(&closed, start)).unwrap();
+                worst = worst.max(share);
+            }
+        }
+        assert!(worst <= tolerance::SAMPLES_OF_EQUAL_RAMPS, "{shape:?}: {worst} of a braking step");
+    }
+}
