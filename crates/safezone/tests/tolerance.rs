@@ -18,3 +18,6 @@ pub(crate) const SAMPLES: f64 = 0.1;
 
 /// The same where both ramps are as long: 0.0030 in 300 000 states.
 pub(crate) const SAMPLES_OF_EQUAL_RAMPS: f64 = 0.005;
+
+/// The same where one direction is 3.3 times as strong as the other: 0.0070 in 300 000 states.
+pub(crate) const SAMPLES_SOME_KNOTS_APART: f64 = 0.01;
