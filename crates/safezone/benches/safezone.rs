@@ -1,5 +1,5 @@
-//! Cost of one joint's safe range and of one table lookup. Targets with the default shape and timing: 40 ns for a range
-//! at worst, 8 ns for a lookup.
+//! Cost of one joint's safe range and of one table lookup. Targets: 40 ns for a range at worst, with the default timing or from
+//! samples, 8 ns for a lookup. With `Fastest` timing the closed form and a table have it solved by iteration.
 //!
 //! A case with several states goes through them in turn, so that branches are as hard to foresee as in a control loop.
 
