@@ -155,6 +155,7 @@ impl<'a> Curve<'a> {
             let index = self.knot_below(self.step_below(guess, distance) * self.subdivisions, distance);
             return self.speed_between(index, self.pair(index), distance);
         }
+        let guess = guess.min(self.steps - 1); // `distance` is less than the last knot's
         let (below, above) = self.pair(guess);
         if below.distance > distance {
             self.speed_between(guess - 1, self.pair(guess - 1), distance)
@@ -189,7 +190,7 @@ impl<'a> Curve<'a> {
             |step: usize| knots.get(step * self.subdivisions).is_some_and(|k| k.distance <= distance);
         if !is_within(guess) {
             guess - 1
-        } else if guess < self.steps && is_within(guess + 1) {
+        } else if is_within(guess + 1) {
             guess + 1
         } else {
             guess
@@ -200,7 +201,7 @@ impl<'a> Curve<'a> {
     #[inline]
     fn knot_below(&self, mut low: usize, distance: f64) -> usize {
         let knots = self.knots();
-        let mut high = (low + self.subdivisions).min(knots.len() - 1);
+        let mut high = low + self.subdivisions;
         while high - low > 1 {
             let middle = low + (high - low) / 2;
             let is_below = knots.get(middle).is_some_and(|k| k.distance <= distance);
@@ -208,5 +209,55 @@ impl<'a> Curve<'a> {
             high = if is_below { high } else { middle };
         }
         low
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::Curve;
+    use crate::table::Knot;
+
+    /// Knots towards a limit with Δ = T = 1: n whole steps need n²/2, plus what `error(n)` makes of n. Half a step ends
+    /// them where a step has parts.
+    fn bent(subdivisions: u32, steps: u32, error: impl Fn(u32) -> f64) -> Vec<Knot> {
+        let distance = |step: u32| 0.5 * (f64::from(step) + error(step)).powi(2);
+        let last = steps * subdivisions + subdivisions / 2;
+        (0..=last)
+            .map(|index| {
+                let (step, share) =
+                    (index / subdivisions, f64::from(index % subdivisions) / f64::from(subdivisions));
+                let distance = (1.0 - share) * distance(step) + share * distance(step + 1);
+                Knot { distance, velocity: f64::from(index) / f64::from(subdivisions) }
+            })
+            .collect()
+    }
+
+    /// Wherever its knots lie that [`Curve::new`] takes, up to half a step off the parabola, the lookup by distance undoes
+    /// the one by speed.
+    #[test]
+    fn a_lookup_by_distance_undoes_the_one_by_speed() {
+        for subdivisions in [1, 16] {
+            for bend in 0..81 {
+                let error = |step: u32| match step {
+                    3..=6 => 0.49 * (f64::from(bend / 3_u32.pow(step - 3) % 3) - 1.0),
+                    7 => 20.0, // nothing is asked of the last step in part
+                    _ => 0.0,
+                };
+                let knots = bent(subdivisions, 6, error);
+                let curve =
+                    Curve::new(knots.as_slice().into(), subdivisions, 1.0).expect("within half a step");
+                let ends = 1e-12;
+                for pair in knots.windows(2) {
+                    for share in [0.0, ends, 0.2, 0.5, 0.8, 1.0 - ends] {
+                        let speed = pair[0].velocity + share * (pair[1].velocity - pair[0].velocity);
+                        let found = curve.max_speed(curve.distance_and_slope(speed).0);
+                        assert!(
+                            (found - speed).abs() <= 1e-14 * 6.0,
+                            "{found} for {speed}, {subdivisions}, {bend}"
+                        );
+                    }
+                }
+            }
+        }
     }
 }
