@@ -197,9 +197,12 @@ fn newton(start: f64, falls: bool, function: impl Fn(f64) -> (f64, f64)) -> f64 
 
 #[cfg(test)]
 mod tests {
-    use jbtg::Shape;
+    use std::cell::Cell;
 
-    use super::{REVERSAL_SHARE, Ramp, Turning};
+    use jbtg::{Direction, Interval, Limits, LimitsSpec, Planner, PlannerSpec, Shape, Timing};
+
+    use super::{REVERSAL_SHARE, Ramp, Turning, newton};
+    use crate::side::{Braking, Side};
 
     fn position([c3, c4, c5]: [f64; 3], u: f64) -> f64 {
         u * u * u * (c3 + u * (c4 + u * c5))
@@ -231,6 +234,88 @@ mod tests {
                     .collect();
                 assert!(heights.windows(2).all(|pair| pair[1] > pair[0]), "{shape:?}");
             }
+        }
+    }
+
+    /// Checks a derivative at the middle of a small interval.
+    #[track_caller]
+    fn check_slope(slope: f64, function: impl Fn(f64) -> f64, u: f64) {
+        let h = 1e-5;
+        let expected = (function(u + h) - function(u - h)) / (2.0 * h);
+        assert!((slope - expected).abs() <= 1e-8 * (1.0 + expected.abs()), "{slope} for {expected} at {u}");
+    }
+
+    #[test]
+    fn a_ramp_has_the_slopes_of_its_polynomials() {
+        for shape in [Shape::Smoothstep, Shape::SineQuintic].map(Shape::coefficients) {
+            for u in (1..100).map(|i| 0.01 * f64::from(i)) {
+                let ramp = Ramp::at(shape, u);
+                check_slope(u * u * ramp.gain, |u| position(shape, u), u);
+                check_slope(ramp.gain_slope, |u| Ramp::at(shape, u).gain, u);
+                check_slope(ramp.advance_slope, |u| Ramp::at(shape, u).advance, u);
+                for ratio in [0.1, 0.5, 1.0, 3.0] {
+                    let turning = Turning { shape, ratio, rising_per_acceleration: 1.0 };
+                    let (taken, _, slope) = turning.while_falling(u);
+                    let height = |u| {
+                        let (at_u, advance, _) = turning.while_falling(u);
+                        advance * (taken / at_u).powf(1.5)
+                    };
+                    check_slope(slope, height, u);
+                }
+            }
+        }
+    }
+
+    /// Steps of the planner that turn later than braking, in either ramp, against the change found from where they turn.
+    #[test]
+    fn a_step_that_turns_where_it_may_has_the_largest_change() {
+        let mut falling = 0;
+        for (shape, jerk) in [Shape::Smoothstep, Shape::SineQuintic].into_iter().flat_map(|shape| {
+            [(-100.0, 100.0), (-100.0, 11.0), (-20.0, 100.0), (-30.0, 100.0), (-11.0, 100.0)]
+                .map(|jerk| (shape, jerk))
+        }) {
+            let limits = Limits::try_from(LimitsSpec {
+                position: Interval::symmetric(1.0),
+                velocity: Interval::symmetric(0.5),
+                acceleration: Interval::symmetric(1.0),
+                jerk: Interval::new(jerk.0, jerk.1),
+            })
+            .expect("limits");
+            let planner =
+                Planner::try_from(PlannerSpec { limits, shape, timing: Timing::Fastest, period: 0.3 })
+                    .expect("a period");
+            let turning = Braking::new(&planner, Side::Upper).turning;
+            let velocity = 0.3 * planner.authority(Direction::Decreasing).ramps_only;
+            let scale = velocity * (velocity * turning.rising_per_acceleration).sqrt();
+            for change in (101..=330).map(|i| 0.01 * f64::from(i) * velocity) {
+                let step = planner.ramp(0.0, velocity, velocity - change).expect("a step without a cruise");
+                let travel = step.extrema().position.max;
+                if travel > planner.displacement(velocity, 0.0) * (1.0 + 1e-5) {
+                    let found = velocity * turning.change(travel / scale);
+                    assert!(
+                        (found - change).abs() <= 1e-8 * change,
+                        "{found} for {change}, {shape:?}, {jerk:?}"
+                    );
+                    let taken = 0.5 * (1.0 + turning.ratio) * velocity / change;
+                    falling += usize::from(taken > 0.5);
+                }
+            }
+        }
+        assert!(falling > 10, "{falling} turn in the falling ramp");
+    }
+
+    /// Halving alone would take more than fifty.
+    #[test]
+    fn newton_takes_few_evaluations() {
+        for (start, falls) in [(1.0, false), (0.1, false), (1.0, true), (0.1, true)] {
+            let evaluations = Cell::new(0);
+            let sign = if falls { -1.0 } else { 1.0 };
+            let root = newton(start, falls, |u| {
+                evaluations.set(evaluations.get() + 1);
+                (sign * (u * u - 0.3), sign * 2.0 * u)
+            });
+            assert!((root - 0.3_f64.sqrt()).abs() <= 4.0 * f64::EPSILON, "{root}");
+            assert!(evaluations.get() <= 35, "{}", evaluations.get());
         }
     }
 }

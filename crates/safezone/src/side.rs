@@ -263,3 +263,6 @@ impl Braking {
 fn rounding(steps: f64, length: f64, scale: f64) -> f64 {
     f64::EPSILON * (smaller(steps, sqrt(2.0 * length)) + 16.0) * scale
 }
+
+#[cfg(test)]
+mod tests;

@@ -329,3 +329,6 @@ pub enum ZoneError {
         guard: f64,
     },
 }
+
+#[cfg(test)]
+mod tests;
