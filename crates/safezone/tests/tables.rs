@@ -76,10 +76,23 @@ fn braking_takes_more_knots_than_a_table_holds() {
         let (shape, timing) = (Shape::Smoothstep, Timing::Stretched);
         BrakingTable::build(&Planner::try_from(PlannerSpec { limits, shape, timing, period: 0.05 }).unwrap())
     };
-    let most = (MAX_KNOTS - 1) as f64;
+    let most = MAX_KNOTS as f64 - 1.0;
     assert_eq!(build((most - 0.5) * step).map(|table| table.knots(Side::Lower).len()), Ok(MAX_KNOTS));
     let error = build((most + 0.5) * step).unwrap_err();
     assert_eq!(error, BuildError::TooManyKnots { side: Side::Upper, limit: MAX_KNOTS });
+}
+
+/// A knot from which just the whole interval suffices is not the last.
+#[test]
+fn a_table_goes_on_from_a_knot_that_needs_the_whole_interval() {
+    let telescope = telescope::planner(Shape::Smoothstep, Timing::Stretched);
+    let knot = BrakingTable::build(&telescope).unwrap().knots(Side::Upper)[3];
+    let position = Interval::new(0.0, knot.distance);
+    let limits = SymmetricLimits { position, velocity: 0.15, acceleration: 1.0, jerk: 100.0 };
+    let limits = Limits::try_from(limits).unwrap();
+    let planner = Planner::try_from(PlannerSpec { limits, ..*telescope.spec() }).unwrap();
+    let table = BrakingTable::build(&planner).unwrap();
+    assert_eq!((table.knots(Side::Upper)[3], table.knots(Side::Upper).len()), (knot, 5));
 }
 
 /// The telescope's table with the upper knots forged, and its zone.
