@@ -104,7 +104,8 @@ fn check_range(zone: &SafeZone<'_>, (position, velocity): (f64, f64)) -> Result<
         let at = format!("{side:?} from ({position:e}, {velocity:e}): {range:?} of {reachable:?}");
         if max > brake {
             let room = judge.room_after(max);
-            prop_assert!(room >= -0.25 * judge.rounding, "{at}: {room:e} m lacking");
+            // `rounding.rs` allows one range 7 ulps and a sixteenth of the guard's N + 16: no more than half of these.
+            prop_assert!(room >= -0.5 * judge.rounding, "{at}: {room:e} m lacking");
         }
         if min < brake {
             let room = judge.room_within(min);
