@@ -9,12 +9,15 @@
 use core::hint::black_box;
 
 use jbtg::{Interval, Limits, LimitsSpec, Planner, PlannerSpec, Shape, State, Timing};
-use safezone::{Request, SafeZone};
+use safezone::{Request, SafeZone, Samples};
 
 /// One period of a joint: command, step, samples, extrema. None where something is refused.
 #[inline(never)]
 fn control(spec: PlannerSpec, position: f64, velocity: f64, action: f64) -> Option<State> {
     let zone = SafeZone::closed_form(Planner::try_from(spec).ok()?).ok()?;
+    let mut samples = Samples::default();
+    let sampled = SafeZone::sampled(*zone.planner(), &mut samples).ok()?;
+    black_box(sampled.range(position, velocity));
     let command = zone.command(position, velocity, Request::Action(action));
     let step = zone.planner().ramp(position, velocity, command.velocity).ok()?;
     for tick in 0..50_u32 {
