@@ -89,9 +89,12 @@ fn samples_of_equal_ramps_give_away_little_and_stretched_steps_have_none() {
 /// One direction three to four times as strong as the other, so that the samples of its steps are as many knots apart.
 #[test]
 fn samples_some_knots_apart_give_away_little_too() {
-    for shape in [Shape::Smoothstep, Shape::SineQuintic] {
+    for (shape, acceleration) in [Shape::Smoothstep, Shape::SineQuintic]
+        .into_iter()
+        .flat_map(|shape| [(-1.0, 0.3), (-0.3, 1.0)].map(|(min, max)| (shape, Interval::new(min, max))))
+    {
         let spec = *telescope::planner(shape, Timing::Fastest).spec();
-        let limits = LimitsSpec { acceleration: Interval::new(-1.0, 0.3), ..spec.limits.into() };
+        let limits = LimitsSpec { acceleration, ..spec.limits.into() };
         let limits = Limits::try_from(limits).unwrap();
         let worst = most_given_away(Planner::try_from(PlannerSpec { limits, ..spec }).unwrap());
         assert!(worst <= tolerance::SAMPLES_SOME_KNOTS_APART, "{shape:?}: {worst} of a braking step");
