@@ -61,13 +61,14 @@ proptest! {
 /// The largest share of Δ that an end lacks, over states up to all of the speed that stops in time.
 fn most_given_away(planner: Planner) -> f64 {
     let mut samples = Samples::default();
-    let closed = SafeZone::closed_form(planner).unwrap();
-    let sampled = SafeZone::sampled(planner, &mut samples).unwrap();
+    let closed = SafeZone::closed_form(planner).expect("a joint with room to move");
+    let sampled = SafeZone::sampled(planner, &mut samples).expect("a joint with room to move");
     let mut worst = 0.0_f64;
     for i in 0..=500 {
         for j in 0..=300 {
             let start = (f64::from(i) / 500.0, 1.0 - 0.3 * f64::from(j) / 300.0);
-            let share = share_given_away((&closed, &sampled), safe_state(&closed, start)).unwrap();
+            let share = share_given_away((&closed, &sampled), safe_state(&closed, start))
+                .expect("a range within the closed form's");
             worst = worst.max(share);
         }
     }
