@@ -2,6 +2,7 @@
 
 mod api;
 mod bernstein;
+mod braking;
 mod issues;
 mod no_allocation;
 mod optimum;
@@ -9,6 +10,7 @@ mod overshoot;
 mod paper;
 mod peers;
 mod properties;
+mod refusals;
 mod sampler;
 mod serde_form;
 mod standstill;

@@ -88,6 +88,9 @@ fn a_refused_command_leaves_the_sampler_as_it_was() {
         sampler.advance();
     });
     assert_eq!(sampler.state().velocity, 0.02);
+    assert_eq!(sampler.ticks().get(), 5);
+    sampler.advance();
+    assert!(!sampler.is_commanded()); // the period after the commanded one
 }
 
 #[test]

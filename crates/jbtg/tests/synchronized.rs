@@ -181,3 +181,58 @@ fn a_joint_with_quick_ramps_waits_for_the_others() {
         assert!((authority.share - 0.6).abs() < 1e-13, "{}", authority.share);
     }
 }
+
+/// 35 mm/s per period: 150 mm/s are 4.3 periods, and no change takes none.
+#[test]
+fn a_change_takes_whole_periods() {
+    let joints = Synchronized::new([paper_planner(0.05); 2]).unwrap();
+    assert_eq!(joints.periods(&[0.0, 0.1], &[0.15, 0.1]), Ok(5));
+    assert_eq!(joints.periods(&[0.0, 0.1], &[0.0, 0.08]), Ok(1));
+    assert_eq!(joints.periods(&[0.02, -0.1], &[0.02, -0.1]), Ok(0));
+}
+
+/// 30 ms and 15 ms up, 15 ms and 30 ms down, in a period of 50 ms: both directions give way alike.
+#[test]
+fn common_ramps_that_do_not_fit_share_the_period() {
+    let joint = |jerk| {
+        let limits = jbtg::LimitsSpec {
+            position: Interval::symmetric(1.0),
+            velocity: Interval::symmetric(0.15),
+            acceleration: Interval::symmetric(1.0),
+            jerk,
+        };
+        let limits = jbtg::Limits::try_from(limits).unwrap();
+        Planner::try_from(PlannerSpec { limits, ..paper_spec(0.05) }).unwrap()
+    };
+    let joints =
+        Synchronized::in_step([joint(Interval::new(-100.0, 50.0)), joint(Interval::new(-50.0, 100.0))])
+            .unwrap();
+    for planner in joints.planners() {
+        for direction in [jbtg::Direction::Increasing, jbtg::Direction::Decreasing] {
+            let authority = planner.authority(direction);
+            assert!((authority.ramp_up - 0.025).abs() < 1e-15, "{authority:?}");
+            assert!((authority.ramp_down - 0.025).abs() < 1e-15, "{authority:?}");
+        }
+    }
+}
+
+/// The quick joint's velocity overshoots by more once its ramps are as long as the slow one's.
+#[test]
+fn joints_in_step_keep_the_room_that_common_ramps_need() {
+    let joint = |jerk| {
+        let limits = jbtg::SymmetricLimits {
+            position: Interval::symmetric(1.0),
+            velocity: 0.15,
+            acceleration: 1.0,
+            jerk,
+        };
+        let limits = jbtg::Limits::try_from(limits).unwrap();
+        Planner::try_from(PlannerSpec { limits, shape: Shape::SineQuintic, ..paper_spec(0.8) }).unwrap()
+    };
+    let joints = Synchronized::in_step([joint(1e4), joint(10.0)]).unwrap();
+    let Interval { min, max } = joints.planners()[0].velocity();
+    let step = joints.ramp([0.0; 2], [max, 0.0], [min, 0.0]).unwrap();
+    assert_eq!(step.share, 1.0);
+    let (found, limit) = (step.trajectories[0].extrema().velocity, joints.planners()[0].limits().velocity());
+    check_within("velocity", found, limit).unwrap();
+}

@@ -5,13 +5,14 @@ use std::collections::BTreeMap;
 use jbtg::strategies::planners;
 use jbtg::{
     Detour, DetourCase, Direction, Interval, Limits, LimitsSpec, Planner, PlannerSpec, PulseKind, RampError,
-    State, Trajectory,
+    Shape, State, Trajectory,
 };
 use proptest::prelude::*;
 use proptest::strategy::ValueTree;
 use proptest::test_runner::TestRunner;
 
 use crate::properties::{cases, check_joints, check_within, shares, within};
+use crate::support::paper_spec;
 use crate::tolerance;
 
 const DIRECTIONS: [Direction; 2] = [Direction::Increasing, Direction::Decreasing];
@@ -233,4 +234,23 @@ fn every_case_of_algorithm_3_occurs() {
         // Ramps up and down from one velocity have one kind each only if the limits of both directions differ.
         assert!(count >= 10, "{kinds:?} occurred {count} times among {counts:#?}");
     }
+}
+
+/// In a long period a stretched sine overshoots less than the quickest ramps of a detour would, and may end nearer to the
+/// velocity limits than they: what does is the direct step, described as one.
+#[test]
+fn a_detour_that_is_out_of_the_question_is_described_as_the_direct_step() {
+    let spec = PlannerSpec { shape: Shape::SineQuintic, ..paper_spec(0.8) };
+    let planner = Planner::try_from(spec).unwrap();
+    let Interval { min: bottom, max: top } = planner.velocity();
+    let direct = Detour { case: DetourCase::One, peak: top, rise: None, cruise: 0.0, fall: None };
+    let msap = Some(PulseKind::Msap);
+    let falling = planner.detour(top, 0.1, Direction::Increasing);
+    assert_eq!(falling, Ok(Detour { fall: msap, ..direct }));
+    let rising = planner.detour(0.1, top, Direction::Increasing);
+    assert_eq!(rising, Ok(Detour { rise: msap, ..direct }));
+    let mirrored = planner.detour(bottom, -0.1, Direction::Decreasing);
+    assert_eq!(mirrored, Ok(Detour { peak: bottom, fall: msap, ..direct }));
+    let holding = planner.detour(top, top, Direction::Increasing);
+    assert_eq!(holding, Ok(Detour { case: DetourCase::Three, cruise: 0.8, ..direct }));
 }
