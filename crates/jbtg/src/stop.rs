@@ -111,7 +111,8 @@ impl Planner {
             }
         }
         let trajectory = Motion::new(state, self.limits(), self.stop_scales()).into_stop();
-        let is_finite = |segment: &Segment| segment.coefficients.iter().all(|c| c.is_finite());
+        // Of its derivatives too.
+        let is_finite = |segment: &Segment| segment.coefficients.iter().all(|c| (120.0 * c).is_finite());
         let end = trajectory.end().position + trajectory.duration();
         if !(end.is_finite() && trajectory.segments().iter().all(is_finite)) {
             return Err(StopError::OutOfScale);

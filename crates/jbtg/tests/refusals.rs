@@ -105,6 +105,24 @@ fn a_stop_beyond_double_precision_is_refused_in_words() {
     assert_eq!(refused.to_string(), "velocity must be finite, got NaN");
 }
 
+/// A ramp from so small an acceleration takes next to no time: its quintic overflows, or only the jerk of it does.
+#[test]
+fn a_stop_is_finite_or_refused_however_small_the_state() {
+    let planner = paper_planner(0.05);
+    for exponent in 1..=330 {
+        let small = 10_f64.powi(-exponent);
+        let state = State { position: 0.3, acceleration: small, ..State::default() };
+        match planner.stop(state) {
+            Ok(stop) => {
+                let State { position, velocity, acceleration, jerk } =
+                    stop.trajectory.state_at(0.5 * stop.trajectory.duration());
+                assert!([position, velocity, acceleration, jerk].iter().all(|x| x.is_finite()), "{stop:?}");
+            }
+            Err(error) => assert_eq!(error, StopError::OutOfScale),
+        }
+    }
+}
+
 /// The sine's velocity overshoots by more than the 1e-7 m/s below zero once all ramps are as long as the slow joint's.
 #[test]
 fn a_joint_that_common_ramps_leave_too_little_passes_on_why() {
