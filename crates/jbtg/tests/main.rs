@@ -3,6 +3,7 @@
 mod api;
 mod bernstein;
 mod braking;
+mod interruption;
 mod issues;
 mod no_allocation;
 mod optimum;

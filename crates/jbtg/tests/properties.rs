@@ -143,6 +143,13 @@ proptest! {
     #![proptest_config(cases(20_000))]
 
     #[test]
+    fn a_step_s_duration_leads_to_its_end_bit_for_bit(planner in planners(), shares in (shares(), shares(), shares())) {
+        let (position, v1, v2) = pick(&planner, shares);
+        let step = planner.ramp(position, v1, v2)?;
+        prop_assert_eq!(step.state_at(step.duration()), step.end());
+    }
+
+    #[test]
     fn no_step_exceeds_velocity_acceleration_or_jerk(planner in planners(), shares in (shares(), shares(), shares())) {
         let (position, v1, v2) = pick(&planner, shares);
         let extrema = planner.ramp(position, v1, v2)?.extrema();
