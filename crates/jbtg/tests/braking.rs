@@ -8,7 +8,7 @@ use jbtg::{
 use proptest::prelude::*;
 
 use crate::properties::{cases, check_joints, check_within};
-use crate::support::paper_spec;
+use crate::support::{paper_planner, paper_spec};
 use crate::tolerance;
 
 /// Magnitudes of one direction's limits: of braking that lowers the velocity, or raises it.
@@ -159,4 +159,34 @@ fn a_trace_of_jerk_costs_no_time() {
         planner.stop(state).unwrap().trajectory.duration()
     };
     assert!((stop(-1e-3) / stop(0.0) - 1.0).abs() < 1e-9, "{:e} s, {:e} s", stop(-1e-3), stop(0.0));
+}
+
+/// What brakes to rest as fast as the jerk limit allows, and has the largest jerk ahead of it, goes on doing so in one
+/// quintic, however its state was rounded.
+#[test]
+fn braking_to_rest_goes_on_in_one_quintic() {
+    let frame = Frame::of(&paper_planner(0.05), false);
+    for deceleration in [0.1, 0.5, 0.9] {
+        for rest in [0.55, 0.6, 0.7, 0.8, 0.9, 0.95, 0.99] {
+            let state = frame.on_last_ramp((deceleration, 1.0), rest, 0.0);
+            let stop = paper_planner(0.05).stop(state).unwrap().trajectory;
+            let left = rest * 1.5 * deceleration / 100.0;
+            assert_eq!(stop.segments().len(), 1, "{state:?}");
+            assert!(
+                (stop.duration() - left).abs() <= 1e-12 * left,
+                "{} s instead of {left} s",
+                stop.duration()
+            );
+            check_joints(&stop, state, Shape::Smoothstep).unwrap();
+        }
+    }
+}
+
+/// From a deceleration that takes more velocity to end than there is: to no acceleration, and there and back.
+#[test]
+fn a_stop_that_turns_back_has_no_quintic_to_spare() {
+    let state = State { velocity: 1e-4, acceleration: -0.5, ..State::default() };
+    let stop = paper_planner(0.05).stop(state).unwrap().trajectory;
+    assert_eq!(stop.segments().len(), 3);
+    assert!(stop.extrema().velocity.min < 0.0);
 }
