@@ -19,7 +19,7 @@ fn sampled(planner: &Planner, step: &Trajectory, now: f64) -> Interval {
 }
 
 proptest! {
-    #![proptest_config(cases(400))]
+    #![proptest_config(cases(800))]
 
     #[test]
     fn a_step_is_left_at_the_first_quintic_from_which_the_stop_stays_within_what_it_reaches(
@@ -56,6 +56,10 @@ fn a_step_that_turns_back_is_left_where_a_quintic_begins() {
     let turn = step.segments()[2].start();
     assert!(step.segments().len() > 4 && turn < 0.3);
     assert_eq!(planner.interrupt(&step, 0.0).unwrap().begin, turn);
+    // On the way forth again only what is still to come counts.
+    let step = planner.waypoint_towards(0.3, 0.1, 0.1, Direction::Decreasing).unwrap();
+    let last = step.segments().last().unwrap().start();
+    assert_eq!(planner.interrupt(&step, 0.31).unwrap().begin, last);
 }
 
 /// A millionth beyond the limits of a joint so slow that a billionth of a unit is much.
