@@ -19,7 +19,7 @@ impl Approach<'_> {
     /// [`Timing::Fastest`](jbtg::Timing) a step that changes the velocity's sign starts the more slowly the larger it
     /// is, so that it turns later than a step to zero.
     #[inline]
-    pub(crate) fn min_velocity(self) -> f64 {
+    pub(crate) fn min_velocity(&self) -> f64 {
         let (braking, lowest) = (self.braking, self.reachable.min);
         let turns_late = self.velocity > 0.0 && !braking.stretched;
         if !turns_late && braking.reverse == 0.0 || lowest >= self.brake {
@@ -42,7 +42,7 @@ impl Approach<'_> {
     /// The reversal is over within a twentieth of the ramp and goes at most `reverse` per velocity change beyond motion
     /// at the first velocity. After it a larger change lies pointwise below a smaller one.
     #[inline(never)]
-    fn least_reversing(self, kept: f64) -> f64 {
+    fn least_reversing(&self, kept: f64) -> f64 {
         let braking = self.braking;
         let needed = match (self.is_outside(), self.velocity > 0.0) {
             (true, true) => 0.0,
@@ -64,7 +64,7 @@ impl Approach<'_> {
     /// one at which the turning point, as it advances, meets what is allowed. If braking itself has a cruise no
     /// turning point advances.
     #[inline(never)]
-    fn least_turning(self, kept: f64) -> f64 {
+    fn least_turning(&self, kept: f64) -> f64 {
         let (braking, lowest) = (self.braking, self.reachable.min);
         if self.velocity >= braking.brake.ramps_only {
             return lowest;
@@ -81,7 +81,7 @@ impl Approach<'_> {
     }
 
     /// The largest change of a step without a cruise that turns within `travel`, in closed form.
-    fn change_turning_within(self, travel: f64) -> f64 {
+    fn change_turning_within(&self, travel: f64) -> f64 {
         let turning = &self.braking.turning;
         // A·T²-like scale: every turning point is a multiple of it that depends on where in the pulse it lies.
         let scale = self.velocity * sqrt(self.velocity * turning.rising_per_acceleration);

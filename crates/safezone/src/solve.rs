@@ -35,7 +35,7 @@ impl Approach<'_> {
     /// The travel until rest, of the step and of braking after it, grows with the velocity, so the admissible velocities
     /// form an interval from below.
     #[inline]
-    pub(crate) fn max_velocity(self) -> f64 {
+    pub(crate) fn max_velocity(&self) -> f64 {
         let braking = self.braking;
         let highest = self.reachable.max;
         let way_in = self.rounding_of_the_way_in();
@@ -82,7 +82,7 @@ impl Approach<'_> {
     /// between which two the solution is. An index that rounding puts off by one costs nothing, since neighbouring
     /// lines meet there.
     #[inline]
-    fn solve_stretched(self, room: f64) -> f64 {
+    fn solve_stretched(&self, room: f64) -> f64 {
         let (downwards, upwards) = (&self.braking.downwards, &self.braking.upwards);
         let velocity = self.solve_linear(downwards, room);
         if velocity > self.velocity && upwards.lag != downwards.lag {
@@ -94,7 +94,7 @@ impl Approach<'_> {
 
     /// The velocity at which the travel is `room`, if all steps were `line`'s.
     #[inline]
-    fn solve_linear(self, line: &Line, room: f64) -> f64 {
+    fn solve_linear(&self, line: &Line, room: f64) -> f64 {
         let rest = room - line.lag * self.velocity;
         if rest <= 0.0 {
             return rest * line.per_gain;
@@ -115,7 +115,7 @@ impl Approach<'_> {
     ///
     /// They start where the travel would be `room` if every step had the largest one's mean lag.
     #[inline(never)]
-    fn solve_fastest(self, room: f64) -> f64 {
+    fn solve_fastest(&self, room: f64) -> f64 {
         let travel = |velocity: f64| {
             let (distance, slope) = self.distance_and_slope(velocity);
             let step = self.braking.displacement(self.velocity, velocity);

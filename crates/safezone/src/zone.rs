@@ -167,18 +167,26 @@ impl<'a> SafeZone<'a> {
         }
         let reachable = self.planner.reachable(velocity);
         let brake = towards_zero(velocity, reachable);
-        let upper = self.approach(Side::Upper, position, velocity, reachable, brake);
-        let lower = self.approach(Side::Lower, position, velocity, reachable, brake);
-        let mut max = smaller(upper.max_velocity(), -lower.min_velocity());
-        let mut min = larger(upper.min_velocity(), -lower.max_velocity());
+        let Interval { mut min, mut max } = reachable;
         let mut status = if is_slow { RangeStatus::Safe } else { RangeStatus::VelocityOutside };
-        if max <= brake && upper.cannot_stop() || min >= brake && lower.cannot_stop() {
+        let upper = self.approach(Side::Upper, (position, velocity), reachable, brake, is_slow);
+        let lower = self.approach(Side::Lower, (position, velocity), reachable, brake, is_slow);
+        if let Some(upper) = &upper {
+            max = upper.max_velocity();
+            min = upper.min_velocity();
+        }
+        if let Some(lower) = &lower {
+            max = smaller(max, -lower.min_velocity());
+            min = larger(min, -lower.max_velocity());
+        }
+        let cannot_stop = |limit: &Option<Approach<'_>>| limit.as_ref().is_some_and(Approach::cannot_stop);
+        if max <= brake && cannot_stop(&upper) || min >= brake && cannot_stop(&lower) {
             status = RangeStatus::CannotStop;
         }
-        if upper.is_outside() {
+        if let Some(upper) = upper.filter(Approach::is_outside) {
             status = RangeStatus::PositionOutside;
             max = larger(smaller(max, upper.way_back()), min);
-        } else if lower.is_outside() {
+        } else if let Some(lower) = lower.filter(Approach::is_outside) {
             status = RangeStatus::PositionOutside;
             min = smaller(larger(min, -lower.way_back()), max);
         }
@@ -186,31 +194,26 @@ impl<'a> SafeZone<'a> {
         SafeRange { min, max, brake: smaller(larger(brake, min), max), narrowed, status }
     }
 
+    /// The limit at `side` as a state sees it; none if it is too far to matter.
     #[inline]
     fn approach(
         &self,
         side: Side,
-        position: f64,
-        velocity: f64,
+        (position, velocity): (f64, f64),
         reachable: Interval,
         brake: f64,
-    ) -> Approach<'_> {
+        is_slow: bool,
+    ) -> Option<Approach<'_>> {
+        let (braking, position, velocity, reachable, brake) = match side {
+            Side::Upper => (&self.upper, position, velocity, reachable, brake),
+            Side::Lower => (&self.lower, -position, -velocity, reachable.mirrored(), -brake),
+        };
+        if is_slow && braking.is_far(position) && position >= braking.limit - braking.width {
+            return None;
+        }
         let table = self.table.as_ref().map(|table| table.curve(side));
         let sampled = self.samples.and_then(|samples| samples.side(side));
-        match side {
-            Side::Upper => {
-                Approach { braking: &self.upper, table, sampled, position, velocity, reachable, brake }
-            }
-            Side::Lower => Approach {
-                braking: &self.lower,
-                table,
-                sampled,
-                position: -position,
-                velocity: -velocity,
-                reachable: reachable.mirrored(),
-                brake: -brake,
-            },
-        }
+        Some(Approach { braking, table, sampled, position, velocity, reachable, brake })
     }
 
     /// The range of a state that is not finite: braking as far as the velocity is known.
