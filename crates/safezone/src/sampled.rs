@@ -13,7 +13,7 @@ const SAMPLES: usize = 16;
 const KEPT: usize = 3 * SAMPLES + WINDOW;
 
 /// Knots that a solution looks at, at most.
-const WINDOW: usize = SAMPLES + 4;
+const WINDOW: usize = SAMPLES + 5;
 
 /// The first knot that is brought among the kept ones.
 const FIRST_SHIFTED: i64 = 3 * SAMPLES as i64;
@@ -177,7 +177,12 @@ impl Sampled {
         if self.stride > 1 && offset == 0.0 {
             return larger(self.between_wide_samples(start, room), steady);
         }
-        larger(self.within_window(lags, start, (first, offset), shift.advance, rest), steady)
+        let within = if shift.advance == 0.0 {
+            self.within_window::<false>(lags, start, (first, offset), 0.0, rest)
+        } else {
+            self.within_window::<true>(lags, start, (first, offset), shift.advance, rest)
+        };
+        larger(within, steady)
     }
 
     /// Travel until rest at a kept knot, in a step that has no lag.
@@ -188,9 +193,9 @@ impl Sampled {
     }
 
     /// The velocity at which the travel is `rest`, with a sample at every knot from the kept one `first` on, `offset` knots from
-    /// the one below the start. `advance` is added from knot to knot.
+    /// the one below the start. `advance` is added from knot to knot if they are `SHIFTED`.
     #[inline]
-    fn within_window(
+    fn within_window<const SHIFTED: bool>(
         &self,
         lags: &Lags,
         start: State,
@@ -203,20 +208,29 @@ impl Sampled {
             return f64::NEG_INFINITY; // There are so many from each that a start needs.
         };
         let added = first as f64 * advance;
-        let way = |index: usize| {
-            let way = ways.get(index).map_or(f64::NAN, |way| *way);
-            if advance == 0.0 { way } else { way + (added + index as u32 as f64 * advance) }
+        let way = |ways: &[f64], at: usize, index: usize| {
+            let way = number(ways, at);
+            if SHIFTED { way + (added + index as u32 as f64 * advance) } else { way }
         };
-        let is_within = |index: usize| {
-            let [before, lag, _] = around(lags, index);
-            usize::from(way(index) + between(lag, before, start.share) <= rest)
+        let is_within = |ways: &[f64], lags: &[f64], at: usize, index: usize| {
+            let lag = between(number(lags, at + 1), number(lags, at), start.share);
+            usize::from(way(ways, at, index) + lag <= rest)
         };
         // First of every fourth sample, then of the three between two of those.
-        let fourths = 4 * (is_within(4) + is_within(8) + is_within(12) + is_within(16));
-        let within = fourths + is_within(fourths + 1) + is_within(fourths + 2) + is_within(fourths + 3);
+        let is_fourth_within = |index| is_within(ways, lags, index, index);
+        let fourths =
+            4 * (is_fourth_within(4) + is_fourth_within(8) + is_fourth_within(12) + is_fourth_within(16));
+        let near = ways.get(fourths..).and_then(|ways| ways.first_chunk::<5>());
+        let near_lags = lags.get(fourths..).and_then(|lags| lags.first_chunk::<6>());
+        let (Some(ways), Some(lags)) = (near, near_lags) else {
+            return f64::NEG_INFINITY; // There are so many beyond each fourth.
+        };
+        let is_next_within = |at| is_within(ways, lags, at, fourths + at);
+        let beyond = is_next_within(1) + is_next_within(2) + is_next_within(3);
+        let within = fourths + beyond;
         let float = within as u32 as f64;
-        let [before, lag, after] = around(lags, within);
-        let (low, high) = (way(within), way(within + 1));
+        let [before, lag, after] = [beyond, beyond + 1, beyond + 2].map(|at| number(lags, at));
+        let (low, high) = (way(ways, beyond, within), way(ways, beyond + 1, within + 1));
         let steps = float + offset;
         let knot = (start.whole + steps) * self.spacing;
         let below = Point { velocity: knot, travel: low + between(lag, before, start.share) };
@@ -335,6 +349,12 @@ impl Point {
         let share = (room - self.travel) / (to.travel - self.travel);
         self.velocity + (to.velocity - self.velocity) * smaller(share, 1.0)
     }
+}
+
+/// Number `index`; NaN where there is none.
+#[inline]
+fn number(numbers: &[f64], index: usize) -> f64 {
+    numbers.get(index).map_or(f64::NAN, |number| *number)
 }
 
 #[inline]

@@ -183,10 +183,14 @@ impl<'a> SafeZone<'a> {
         if max <= brake && cannot_stop(&upper) || min >= brake && cannot_stop(&lower) {
             status = RangeStatus::CannotStop;
         }
-        if let Some(upper) = upper.filter(Approach::is_outside) {
+        if let Some(upper) = &upper
+            && upper.is_outside()
+        {
             status = RangeStatus::PositionOutside;
             max = larger(smaller(max, upper.way_back()), min);
-        } else if let Some(lower) = lower.filter(Approach::is_outside) {
+        } else if let Some(lower) = &lower
+            && lower.is_outside()
+        {
             status = RangeStatus::PositionOutside;
             min = smaller(larger(min, -lower.way_back()), max);
         }
