@@ -238,8 +238,7 @@ impl Sampled {
         let velocity = start.velocity + steps * self.spacing;
         let middle = Point { velocity, travel: between(low, high, start.share) + lag };
         let above = Point { velocity: knot + self.spacing, travel: high + between(after, lag, start.share) };
-        let (lower, upper) = (below.towards(middle, rest), middle.towards(above, rest));
-        if middle.travel <= rest { upper } else { lower }
+        if middle.travel <= rest { middle.towards(above, rest) } else { below.towards(middle, rest) }
     }
 
     /// The same with `stride` knots from sample to sample of the steps up.
