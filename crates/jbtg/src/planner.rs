@@ -325,7 +325,10 @@ fn tightened(
 #[inline]
 fn highest_within(velocity: f64, change: f64) -> f64 {
     let target = velocity + change;
-    if target - velocity > change { target.next_down() } else { target }
+    // `f64::next_down`, but without a branch, as it is a matter of chance whether it is due. It never is for 0.
+    let ulp = u64::from(target - velocity > change);
+    let down = if target < 0.0 { ulp } else { ulp.wrapping_neg() };
+    f64::from_bits(target.to_bits().wrapping_add(down))
 }
 
 /// `f64::min` in one instruction; a NaN `b` stays.

@@ -74,7 +74,7 @@ fn safe_range(c: &mut Criterion) {
         let mut samples = Samples::default();
         let sampled = safezone::SafeZone::sampled(*closed.planner(), &mut samples).expect("room to move");
         for (case, position, velocity) in
-            [("free", 0.30, 0.05), ("near_limit", 0.492, 0.10), ("turning", 0.4999, 0.002)]
+            [("free", 0.30, 0.05), ("near_limit", 0.492, 0.10), ("turning", 0.499_985, 0.002)]
         {
             for (source, zone) in [("closed_form", &closed), ("table", &tabled), ("samples", &sampled)] {
                 group.bench_function(format!("{name}_{source}/{case}"), |b| {

@@ -6,7 +6,7 @@
 use std::hint::black_box;
 
 use criterion::{Bencher, Criterion, criterion_group, criterion_main};
-use jbtg::{Interval, Limits, Planner, PlannerSpec, Shape, SymmetricLimits, Timing};
+use jbtg::{Interval, Limits, LimitsSpec, Planner, PlannerSpec, Shape, Timing};
 use safezone::{BrakingTable, Request, SafeZone, Samples, Side};
 
 const LONG: Interval = Interval::new(0.14, 0.50);
@@ -15,9 +15,20 @@ const SHORT: Interval = Interval::new(0.14, 0.1435);
 /// States per case.
 const STATES: usize = 1024;
 
+/// As strong in both directions.
+const EQUAL: Interval = Interval::symmetric(1.0);
+/// Braking before the upper limit is weaker than speeding up towards it.
+const UNEQUAL: Interval = Interval::new(-0.3, 1.0);
+
 /// The paper's joint with another position interval.
 fn planner(position: Interval, shape: Shape, timing: Timing) -> Planner {
-    let limits = SymmetricLimits { position, velocity: 0.15, acceleration: 1.0, jerk: 100.0 };
+    planner_with(position, EQUAL, shape, timing)
+}
+
+/// And with other accelerations.
+fn planner_with(position: Interval, acceleration: Interval, shape: Shape, timing: Timing) -> Planner {
+    let (velocity, jerk) = (Interval::symmetric(0.15), Interval::symmetric(100.0));
+    let limits = LimitsSpec { position, velocity, acceleration, jerk };
     let limits = Limits::try_from(limits).expect("the paper's limits");
     Planner::try_from(PlannerSpec { limits, shape, timing, period: 0.05 }).expect("the paper's period")
 }
@@ -102,13 +113,14 @@ fn range(c: &mut Criterion) {
         let long = zone(planner(LONG, Smoothstep, Stretched), &mut more);
         let states = braking(&long);
         group.bench_function(format!("worst/braking/{distances}"), |b| time_ranges(b, &long, &states));
-        for (name, shape, timing) in [
-            ("fastest", Smoothstep, Fastest),
-            ("sine", SineQuintic, Stretched),
-            ("sine_fastest", SineQuintic, Fastest),
+        for (name, acceleration, shape, timing) in [
+            ("fastest", EQUAL, Smoothstep, Fastest),
+            ("fastest_unequal", UNEQUAL, Smoothstep, Fastest),
+            ("sine", EQUAL, SineQuintic, Stretched),
+            ("sine_fastest", EQUAL, SineQuintic, Fastest),
         ] {
-            let long = zone(planner(LONG, shape, timing), &mut samples);
-            let short = zone(planner(SHORT, shape, timing), &mut more);
+            let long = zone(planner_with(LONG, acceleration, shape, timing), &mut samples);
+            let short = zone(planner_with(SHORT, acceleration, shape, timing), &mut more);
             let states = adversarial(&long);
             group.bench_function(format!("{name}/{distances}"), |b| time_ranges(b, &long, &states));
             let states = adversarial(&short);

@@ -1,6 +1,6 @@
 //! Builds braking tables. Offline: allocates.
 
-use jbtg::Planner;
+use jbtg::{Interval, Planner};
 
 use crate::side::{Braking, Side};
 use crate::table::{BrakingTable, Knot, TableError, subdivisions};
@@ -23,20 +23,22 @@ impl BrakingTable<'static> {
     /// so far apart that knots coincide.
     pub fn build(planner: &Planner) -> Result<Self, BuildError> {
         let subdivisions = subdivisions(planner.spec().timing);
-        let upper = knots(planner, Side::Upper, subdivisions)?;
-        let lower = knots(planner, Side::Lower, subdivisions)?;
+        let Interval { min, max } = planner.velocity();
+        let upper = knots(planner, Side::Upper, max, subdivisions)?;
+        let lower = knots(planner, Side::Lower, -min, subdivisions)?;
         Ok(Self::owned(*planner.spec(), subdivisions, upper, lower)?)
     }
 }
 
-fn knots(planner: &Planner, side: Side, subdivisions: u32) -> Result<Vec<Knot>, BuildError> {
+/// Knots from rest to `highest`, or to what braking within the interval needs.
+fn knots(planner: &Planner, side: Side, highest: f64, subdivisions: u32) -> Result<Vec<Knot>, BuildError> {
     let braking = Braking::new(planner, side);
     let spacing = braking.step / f64::from(subdivisions);
     let lift = braking.kink_depth(spacing);
     let mut knots = vec![Knot { distance: 0.0, velocity: 0.0 }];
     loop {
         let Knot { distance, velocity } = knots[knots.len() - 1];
-        if velocity >= braking.velocity || distance > braking.width {
+        if velocity >= highest || distance > braking.width {
             return Ok(knots);
         }
         if knots.len() == MAX_KNOTS {

@@ -1,8 +1,8 @@
 //! Limits that the interior of a step crosses although both its ends keep them.
 
 use crate::math::{larger, smaller, sqrt};
-use crate::side::Turning;
-use crate::solve::Approach;
+use crate::side::{Braking, Turning};
+use crate::turns::Turns;
 
 /// Bound of the share of a ramp, and so of a period, in which the sine's quintic moves against its own direction.
 const REVERSAL_SHARE: f64 = 0.06;
@@ -10,53 +10,59 @@ const REVERSAL_SHARE: f64 = 0.06;
 /// Most Newton steps; each that leaves its bracket halves it.
 const ROUNDS: u32 = 60;
 
-impl Approach<'_> {
+impl Braking {
     /// Least velocity whose step does not come nearer to the limit, anywhere inside it, than braking at once would
-    /// or than the guard allows [rad/s or m/s]. At most the braking velocity.
+    /// or than the guard allows [rad/s or m/s]. At least `lowest`, at most the `brake` velocity.
     ///
     /// Two things can happen. A ramp that starts against its own direction
     /// ([`Shape::SineQuintic`](jbtg::Shape)) first moves towards the limit. And with
     /// [`Timing::Fastest`](jbtg::Timing) a step that changes the velocity's sign starts the more slowly the larger it
     /// is, so that it turns later than a step to zero.
     #[inline]
-    pub(crate) fn min_velocity(&self) -> f64 {
-        let (braking, lowest) = (self.braking, self.reachable.min);
-        let turns_late = self.velocity > 0.0 && !braking.stretched;
-        if !turns_late && braking.reverse == 0.0 || lowest >= self.brake {
+    pub(crate) fn min_velocity(
+        &self,
+        turns: Option<&Turns>,
+        (position, velocity): (f64, f64),
+        (lowest, brake): (f64, f64),
+    ) -> f64 {
+        let turns_late = velocity > 0.0 && !self.stretched;
+        if !turns_late && self.reverse == 0.0 || lowest >= brake {
             return lowest;
         }
-        let kept = braking.limit - 0.5 * braking.guard;
-        let farthest = self.position + larger(self.velocity, 0.0) * braking.period + braking.overshoot;
-        if farthest <= kept {
-            lowest
-        } else if turns_late {
-            self.least_turning(kept)
-        } else {
-            self.least_reversing(kept)
+        // A turning point is no farther than at that mean velocity: for the largest change without a cruise its way per velocity
+        // grows with the velocity, up to that change, and then is the lag of braking.
+        let lasting = if turns_late { self.brake.mean_of_ramps } else { self.period };
+        let kept = self.limit - 0.5 * self.guard;
+        if position + larger(velocity, 0.0) * lasting + self.overshoot <= kept {
+            return lowest;
         }
+        let change = if turns_late {
+            self.largest_turning(turns, velocity, kept - position)
+        } else {
+            self.largest_reversing(position, velocity, kept)
+        };
+        smaller(larger(velocity - change, lowest), brake)
     }
 
-    /// Least velocity whose step's start, against its own direction, stays within `kept` or, from rest near the limit
+    /// Largest change of a step whose start, against its own direction, stays within `kept` or, from rest near the limit
     /// or beyond it, within what the shape cannot do without.
     ///
     /// The reversal is over within a twentieth of the ramp and goes at most `reverse` per velocity change beyond motion
     /// at the first velocity. After it a larger change lies pointwise below a smaller one.
     #[inline(never)]
-    fn least_reversing(&self, kept: f64) -> f64 {
-        let braking = self.braking;
-        let needed = match (self.is_outside(), self.velocity > 0.0) {
+    fn largest_reversing(&self, position: f64, velocity: f64, kept: f64) -> f64 {
+        let needed = match (self.is_outside(position), velocity > 0.0) {
             (true, true) => 0.0,
             // The way back must not wait for the overshoot to fit.
-            (true, false) => braking.overshoot,
-            (false, _) => 1e-13 * braking.width,
+            (true, false) => self.overshoot,
+            (false, _) => 1e-13 * self.width,
         };
-        let room = larger(kept - self.position, braking.distance(self.velocity) + needed);
-        let reached = REVERSAL_SHARE * braking.period * larger(self.velocity, 0.0);
-        let change = (room - reached) / braking.reverse;
-        smaller(larger(self.velocity - change, self.reachable.min), self.brake)
+        let room = larger(kept - position, self.distance(velocity) + needed);
+        let reached = REVERSAL_SHARE * self.period * larger(velocity, 0.0);
+        (room - reached) / self.reverse
     }
 
-    /// Least velocity whose step turns before `kept`, or no later than braking at once, where `velocity` > 0 and the
+    /// Largest change of a step that turns within `travel`, or no later than braking at once, where `velocity` > 0 and the
     /// timing is [`Timing::Fastest`](jbtg::Timing).
     ///
     /// As the change grows from `velocity` on, the turning point first recedes and then advances, until the step has a
@@ -64,28 +70,24 @@ impl Approach<'_> {
     /// one at which the turning point, as it advances, meets what is allowed. If braking itself has a cruise no
     /// turning point advances.
     #[inline(never)]
-    fn least_turning(&self, kept: f64) -> f64 {
-        let (braking, lowest) = (self.braking, self.reachable.min);
-        if self.velocity >= braking.brake.ramps_only {
-            return lowest;
+    fn largest_turning(&self, turns: Option<&Turns>, velocity: f64, travel: f64) -> f64 {
+        if velocity >= self.brake.ramps_only {
+            return f64::INFINITY;
         }
-        let change = match self.sampled {
-            Some(sampled) => sampled.turns.change(self.velocity, kept - self.position),
-            None => self.change_turning_within(larger(kept - self.position, braking.distance(self.velocity))),
+        let change = match turns {
+            Some(turns) => turns.change(velocity, travel),
+            None => self.change_turning_within(velocity, larger(travel, self.distance(velocity))),
         };
-        if change < braking.brake.ramps_only {
-            smaller(larger(self.velocity - change, lowest), self.brake)
-        } else {
-            lowest
-        }
+        if change < self.brake.ramps_only { change } else { f64::INFINITY }
     }
 
     /// The largest change of a step without a cruise that turns within `travel`, in closed form.
-    fn change_turning_within(&self, travel: f64) -> f64 {
-        let turning = &self.braking.turning;
+    #[inline(never)]
+    fn change_turning_within(&self, velocity: f64, travel: f64) -> f64 {
+        let turning = &self.turning;
         // A·T²-like scale: every turning point is a multiple of it that depends on where in the pulse it lies.
-        let scale = self.velocity * sqrt(self.velocity * turning.rising_per_acceleration);
-        self.velocity * turning.change(travel / scale)
+        let scale = velocity * sqrt(velocity * turning.rising_per_acceleration);
+        velocity * turning.change(travel / scale)
     }
 }
 

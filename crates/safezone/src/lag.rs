@@ -20,7 +20,7 @@ pub(crate) struct Lag {
     pub(crate) ramps_only: f64,
     per_ramps_only: f64,
     /// Lag per change at `ramps_only` \[s\].
-    mean_of_ramps: f64,
+    pub(crate) mean_of_ramps: f64,
     /// Lag at `ramps_only` [rad or m].
     base: f64,
     /// Slope of the lag right above `ramps_only` \[s\].
@@ -94,6 +94,11 @@ impl Lag {
     pub(crate) fn sag(&self, spacing: f64) -> f64 {
         let power = spacing * self.mean_of_ramps * sqrt(spacing * self.per_ramps_only);
         4.0 / 27.0 * power + 0.25 * self.half_growth * (spacing * spacing)
+    }
+
+    /// By how much the slope falls where steps begin to have a cruise \[s\].
+    pub(crate) fn kink(&self) -> f64 {
+        larger(1.5 * self.mean_of_ramps - self.slope, 0.0)
     }
 
     #[inline]

@@ -1,5 +1,7 @@
 //! The range of velocities that are safe to command next.
 
+use jbtg::Interval;
+
 /// Velocities that one period can reach and that keep every limit now and for ever.
 ///
 /// Never empty: min ≤ max always.
@@ -38,6 +40,13 @@ pub enum RangeStatus {
 }
 
 impl SafeRange {
+    /// All of what is `reachable`.
+    #[inline]
+    pub(crate) const fn free(reachable: Interval, brake: f64) -> Self {
+        let Interval { min, max } = reachable;
+        Self { min, max, brake, narrowed: false, status: RangeStatus::Safe }
+    }
+
     /// The velocity that an action in [−1, 1] stands for, [P, Eq. (mapping)] [rad/s or m/s].
     ///
     /// −1 is exactly `min`, 1 exactly `max`. Total: an action beyond ±1 counts as ±1, NaN as `brake`;

@@ -4,6 +4,7 @@ use jbtg::{Direction, Planner, Timing};
 
 use crate::lag::Lag;
 use crate::math::{larger, smaller, sqrt};
+use crate::table::subdivisions;
 
 /// A position limit of a joint.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -29,12 +30,20 @@ pub(crate) struct Braking {
     half_square: f64,
     /// 2/(Δ·T) [1 per rad or m].
     growth: f64,
+    /// Linear coefficient of the parabola through a period's displacement and the distance at braking steps \[s\].
+    travel_slope: f64,
+    /// Its quadratic one, T/(2Δ) [s² per rad or m].
+    travel_curve: f64,
     /// Full braking steps from the largest velocity.
     pub(crate) most_steps: f64,
     /// Lag of steps away from the limit: braking.
     pub(crate) brake: Lag,
     /// Lag of steps towards the limit.
     pub(crate) climb: Lag,
+    /// Velocity that one period adds at most [rad/s or m/s].
+    pub(crate) largest_climb: f64,
+    /// Lag of that step [rad or m].
+    climb_lag: f64,
     /// Displacement of the step from Δ to 0 [rad or m].
     last_step: f64,
     /// Excess of a step's interior over its ends, per velocity change \[s\]; 0 for the smoothstep.
@@ -45,8 +54,6 @@ pub(crate) struct Braking {
     pub(crate) downwards: Line,
     /// Steps upwards.
     pub(crate) upwards: Line,
-    /// Largest velocity that a step may end at [rad/s or m/s].
-    pub(crate) velocity: f64,
     /// Width of the position interval [rad or m].
     pub(crate) width: f64,
     /// What rounding may add over a whole braking manoeuvre [rad or m].
@@ -55,12 +62,16 @@ pub(crate) struct Braking {
     pub(crate) tolerance: f64,
     /// Distance that a step by choice keeps from the limit [rad or m]; braking may use it up.
     pub(crate) guard: f64,
+    /// The limit less the guard [rad or m].
+    pub(crate) kept: f64,
     /// Whether velocity follows one time course per direction ([`Timing::Stretched`]).
     pub(crate) stretched: bool,
     /// Where a step that turns around within its period turns.
     pub(crate) turning: Turning,
     /// Up to here no step within the velocity limits needs to know the position [rad or m].
-    free_until: f64,
+    pub(crate) far_until: f64,
+    /// Up to here no step does that leaves room for its [`Braking::travel_bound`] [rad or m].
+    pub(crate) free_until: f64,
 }
 
 /// Steps with a lag of `lag` per velocity change, upwards or downwards: a step to v′ covers `gain`·v′ and `lag`·v. Together
@@ -132,6 +143,8 @@ impl Braking {
             ratio: down / up,
             rising_per_acceleration: 0.5 * up * (up + down) / authority.ramps_only,
         };
+        let guard = rounding + 2.0 * reverse * step;
+        let largest_climb = planner.authority(towards).velocity_change;
         let mut braking = Self {
             limit,
             step,
@@ -139,7 +152,11 @@ impl Braking {
             period,
             half_square: 0.5 * step * period,
             growth: 2.0 / (step * period),
+            travel_slope: 0.5 * period + brake.mean,
+            travel_curve: 0.5 * period / step,
             most_steps: (velocity / step) as i64 as f64,
+            largest_climb,
+            climb_lag: climb.at(largest_climb),
             last_step: brake.at(step),
             brake,
             climb,
@@ -147,16 +164,20 @@ impl Braking {
             overshoot: reverse * step,
             downwards: line(brake.mean),
             upwards: line(climb.mean),
-            velocity,
             width,
             rounding,
             tolerance: rounding.min(0.5e-12 * width),
-            guard: rounding + 2.0 * reverse * step,
+            guard,
+            kept: limit - guard,
             stretched,
             turning,
+            far_until: f64::NEG_INFINITY,
             free_until: f64::NEG_INFINITY,
         };
-        braking.set_longest_stop(braking.distance(velocity));
+        // What tables and samples lift the distance by, and the height of its chords over the parabola.
+        let lift = braking.chord_depth(step / f64::from(subdivisions(Timing::Fastest)));
+        braking.free_until = braking.kept - (braking.overshoot + lift + 0.25 * braking.half_square);
+        braking.far_until = braking.free_until - braking.travel_bound(velocity);
         braking
     }
 
@@ -164,11 +185,6 @@ impl Braking {
     pub(crate) fn rounding_over(&self, length: f64, size: f64) -> f64 {
         let scale = larger(size, larger(self.width, self.limit.abs()));
         rounding(f64::INFINITY, length / (self.step * self.period), scale)
-    }
-
-    /// Takes note of the distance that the largest velocity needs [rad or m].
-    pub(crate) fn set_longest_stop(&mut self, distance: f64) {
-        self.free_until = self.limit - self.guard - (self.velocity * self.period + distance);
     }
 
     /// Distance of the stepwise braking policy from `velocity`, in closed form [rad or m]; 0 for a velocity away
@@ -222,10 +238,30 @@ impl Braking {
         (n * self.step, sum, line.slope + n * self.period + overshoot_slope)
     }
 
-    /// Whether every step within the velocity limits keeps the position limit and leaves room to brake.
+    /// Whether no step within the velocity limits comes so near to the limit that it leaves no room to brake.
     #[inline]
     pub(crate) fn is_far(&self, position: f64) -> bool {
-        position <= self.free_until
+        position <= self.far_until
+    }
+
+    /// Whether no step from `velocity` on, within the velocity limits, does.
+    #[inline]
+    pub(crate) fn is_free(&self, position: f64, velocity: f64) -> bool {
+        let farthest = self.travel_bound(velocity + self.largest_climb) - self.climb_lag;
+        position <= self.free_until && position + farthest <= self.free_until
+    }
+
+    /// What a period at that velocity and braking from it take at most, less what `free_until` keeps for it [rad or m].
+    #[inline]
+    fn travel_bound(&self, velocity: f64) -> f64 {
+        let velocity = larger(velocity, 0.0);
+        velocity * (self.travel_slope + velocity * self.travel_curve)
+    }
+
+    /// Whether `position` is beyond the limit by more than rounding.
+    #[inline]
+    pub(crate) fn is_outside(&self, position: f64) -> bool {
+        position > self.limit + self.tolerance
     }
 
     /// How far the distance rises above its linear interpolation between knots `spacing` apart [rad or m].
@@ -241,6 +277,13 @@ impl Braking {
         let [at_low, at_kink, at_high] = [low, kink, low + spacing].map(|v| self.distance(v));
         let between = at_low + (kink - low) / spacing * (at_high - at_low);
         (at_kink - between).max(0.0)
+    }
+
+    /// Twice what a chord over velocities `spacing` apart, wherever they begin, lies below the distance at most [rad or m].
+    ///
+    /// But for where its slope falls, the distance is convex.
+    pub(crate) fn chord_depth(&self, spacing: f64) -> f64 {
+        0.5 * spacing * (self.brake.kink() + self.reverse)
     }
 
     /// Displacement of one step, mirrored [rad or m].

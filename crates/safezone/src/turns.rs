@@ -1,6 +1,6 @@
 //! Where steps of [`Timing::Fastest`](jbtg::Timing) that change their direction turn, from samples.
 
-use crate::math::{larger, smaller, sqrt};
+use crate::math::{floor, larger, smaller, sqrt};
 use crate::side::Braking;
 
 /// Parts that the samples divide their interval into.
@@ -12,8 +12,8 @@ const PARTS: usize = 32;
 /// `docs/guarantee.md`) and is close to a multiple of w³. So its cube root is sampled, from above.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Turns {
-    /// Cube roots of v/c where w is a multiple of 1/32.
-    roots: [f64; PARTS + 1],
+    /// Cube roots of v/c where w is a multiple of 1/32, the last one twice.
+    roots: [f64; PARTS + 2],
     /// Lag per change of the largest step without a cruise \[s\].
     mean_lag: f64,
     /// 32 per that change [1 per rad/s or m/s].
@@ -29,11 +29,12 @@ impl Turns {
         // What braking covers, in the unit of `Turning::change`.
         let braked = mean_lag / sqrt(change * turning.rising_per_acceleration);
         let root = |part: f64| cube_root(1.0 / turning.change(braked * sqrt(PARTS as f64 / part)));
-        let mut exact = [0.0; PARTS + 1];
-        for (part, exact) in exact.iter_mut().enumerate().skip(1) {
+        let mut exact = [0.0; PARTS + 2];
+        for (part, exact) in exact[..=PARTS].iter_mut().enumerate().skip(1) {
             *exact = root(part as f64);
         }
         // Where the roots are concave, as those of the sine's reversal are, both ends of a chord are lifted above them.
+        exact[PARTS + 1] = exact[PARTS];
         let mut roots = exact;
         for part in 1..PARTS {
             let chord = 0.5 * (exact[part] + exact[part + 1]);
@@ -57,9 +58,12 @@ impl Turns {
         let share = velocity * self.mean_lag / travel;
         let parts = share * share * (velocity * self.parts_per_change);
         let parts = if travel > 0.0 { smaller(parts, PARTS as f64) } else { PARTS as f64 };
-        let index = (parts as u32 as usize).min(PARTS - 1);
-        let (low, high) = (self.roots[index], self.roots[index + 1]);
-        let root = low + (parts - index as u32 as f64) * (high - low);
+        let (whole, index) = floor(parts);
+        let Some(&[low, high]) = self.roots.get(index as usize..).and_then(|roots| roots.first_chunk())
+        else {
+            return velocity; // Parts are not less than none.
+        };
+        let root = low + (parts - whole) * (high - low);
         velocity / (root * root * root)
     }
 }

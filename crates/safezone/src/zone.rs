@@ -4,9 +4,8 @@ use jbtg::{Interval, Planner};
 
 use crate::math::{larger, smaller};
 use crate::range::{RangeStatus, SafeRange};
-use crate::sampled::Samples;
+use crate::sampled::{Sampled, Samples};
 use crate::side::{Braking, Side};
-use crate::solve::Approach;
 use crate::table::{BrakingTable, subdivisions};
 
 /// Relative difference that counts as rounding between a knot and what braking takes.
@@ -41,7 +40,7 @@ pub struct SafeZone<'a> {
     table: Option<BrakingTable<'a>>,
     upper: Braking,
     lower: Braking,
-    samples: Option<&'a Samples>,
+    samples: [Option<&'a Sampled>; 2],
 }
 
 impl SafeZone<'static> {
@@ -85,21 +84,16 @@ impl<'a> SafeZone<'a> {
     pub fn sampled(planner: Planner, samples: &'a mut Samples) -> Result<Self, ZoneError> {
         let zone = Self::assemble(planner, None)?;
         samples.fill(&planner, &zone.upper, &zone.lower);
-        Ok(Self { samples: Some(samples), ..zone })
+        Ok(Self { samples: samples.sides(), ..zone })
     }
 
     fn assemble(planner: Planner, table: Option<BrakingTable<'a>>) -> Result<Self, ZoneError> {
-        let mut upper = Braking::new(&planner, Side::Upper);
-        let mut lower = Braking::new(&planner, Side::Lower);
-        if let Some(table) = &table {
-            upper.set_longest_stop(table.distance(Side::Upper, upper.velocity));
-            lower.set_longest_stop(table.distance(Side::Lower, lower.velocity));
-        }
+        let (upper, lower) = (Braking::new(&planner, Side::Upper), Braking::new(&planner, Side::Lower));
         let guard = upper.guard + lower.guard;
         if guard >= 0.5 * upper.width {
             return Err(ZoneError::Narrow { width: upper.width, guard });
         }
-        Ok(Self { planner, table, upper, lower, samples: None })
+        Ok(Self { planner, table, upper, lower, samples: [None; 2] })
     }
 
     /// The planner whose steps the ranges are made for.
@@ -152,118 +146,137 @@ impl<'a> SafeZone<'a> {
     #[must_use]
     #[inline]
     pub fn range(&self, position: f64, velocity: f64) -> SafeRange {
-        let is_slow = self.planner.velocity().contains(velocity);
-        if is_slow && self.upper.is_far(position) && self.lower.is_far(-position) {
-            let Interval { min, max } = self.planner.reachable(velocity);
-            let brake = towards_zero(velocity, Interval { min, max });
-            return SafeRange { min, max, brake, narrowed: false, status: RangeStatus::Safe };
+        let reachable = self.planner.reachable(velocity);
+        let brake = towards_zero(reachable);
+        if self.planner.velocity().contains(velocity) {
+            if self.upper.is_far(position) && self.lower.is_far(-position) {
+                return SafeRange::free(reachable, brake);
+            }
+            if self.planner.limits().position().contains(position) {
+                return self.range_inside(position, velocity, reachable, brake);
+            }
         }
-        self.range_near_a_limit(position, velocity, is_slow)
+        self.range_outside(position, velocity, reachable, brake)
     }
 
-    fn range_near_a_limit(&self, position: f64, velocity: f64, is_slow: bool) -> SafeRange {
+    /// The range of a joint within its limits, one of which at least is not far.
+    fn range_inside(&self, position: f64, velocity: f64, reachable: Interval, brake: f64) -> SafeRange {
+        let is_free_above = self.upper.is_free(position, velocity);
+        let is_free_below = self.lower.is_free(-position, -velocity);
+        match (is_free_above, is_free_below) {
+            (true, true) => SafeRange::free(reachable, brake),
+            (false, true) => self.range_before(Side::Upper, position, velocity, reachable, brake),
+            (true, false) => self.range_before(Side::Lower, position, velocity, reachable, brake),
+            (false, false) => self.range_between(position, velocity, reachable, brake),
+        }
+    }
+
+    /// What both limits leave of the velocities that are reachable.
+    #[inline(never)]
+    fn range_between(&self, position: f64, velocity: f64, reachable: Interval, brake: f64) -> SafeRange {
+        let [upper, lower] = [Side::Upper, Side::Lower]
+            .map(|side| self.range_before(side, position, velocity, reachable, brake));
+        SafeRange {
+            min: larger(upper.min, lower.min),
+            max: smaller(upper.max, lower.max),
+            brake,
+            narrowed: upper.narrowed || lower.narrowed,
+            status: if upper.status == RangeStatus::Safe { lower.status } else { upper.status },
+        }
+    }
+
+    /// What the limit at `side` leaves of them.
+    #[inline(never)]
+    fn range_before(
+        &self,
+        side: Side,
+        position: f64,
+        velocity: f64,
+        reachable: Interval,
+        brake: f64,
+    ) -> SafeRange {
+        let [upper_samples, lower_samples] = self.samples;
+        let (braking, sampled, sign, Interval { min: lowest, max: highest }) = match side {
+            Side::Upper => (&self.upper, upper_samples, 1.0, reachable),
+            Side::Lower => (&self.lower, lower_samples, -1.0, reachable.mirrored()),
+        };
+        let (position, velocity, stop) = (sign * position, sign * velocity, sign * brake);
+        let room = braking.kept - braking.rounding_of_the_way_in(position) - position;
+        let fitting = if let Some(sampled) = sampled {
+            sampled.max_velocity(velocity, room)
+        } else {
+            let table = self.table.as_ref().map(|table| table.curve(side));
+            if braking.stretched {
+                braking.solve_stretched(table, velocity, room)
+            } else {
+                braking.solve_fastest(table, velocity, (stop, highest), room)
+            }
+        };
+        let max = smaller(larger(fitting, stop), highest);
+        let turns = sampled.map(|sampled| &sampled.turns);
+        let min = braking.min_velocity(turns, (position, velocity), (lowest, stop));
+        let status = if velocity > 0.0 && max <= stop && braking.cannot_stop(position, velocity) {
+            RangeStatus::CannotStop
+        } else {
+            RangeStatus::Safe
+        };
+        let narrowed = min > lowest || max < highest;
+        let (min, max) = if side == Side::Upper { (min, max) } else { (-max, -min) };
+        SafeRange { min, max, brake, narrowed, status }
+    }
+
+    /// The range of a joint outside its limits.
+    #[cold]
+    fn range_outside(&self, position: f64, velocity: f64, reachable: Interval, brake: f64) -> SafeRange {
         if !(position.is_finite() && velocity.is_finite()) {
             return self.blind_range(velocity);
         }
-        let reachable = self.planner.reachable(velocity);
-        let brake = towards_zero(velocity, reachable);
-        let Interval { mut min, mut max } = reachable;
-        let mut status = if is_slow { RangeStatus::Safe } else { RangeStatus::VelocityOutside };
-        let upper = self.approach(Side::Upper, (position, velocity), reachable, brake, is_slow);
-        let lower = self.approach(Side::Lower, (position, velocity), reachable, brake, is_slow);
-        if let Some(upper) = &upper {
-            max = upper.max_velocity();
-            min = upper.min_velocity();
+        let SafeRange { mut min, mut max, mut status, .. } =
+            self.range_between(position, velocity, reachable, brake);
+        if status == RangeStatus::Safe && !self.planner.velocity().contains(velocity) {
+            status = RangeStatus::VelocityOutside;
         }
-        if let Some(lower) = &lower {
-            max = smaller(max, -lower.min_velocity());
-            min = larger(min, -lower.max_velocity());
-        }
-        let cannot_stop = |limit: &Option<Approach<'_>>| limit.as_ref().is_some_and(Approach::cannot_stop);
-        if max <= brake && cannot_stop(&upper) || min >= brake && cannot_stop(&lower) {
-            status = RangeStatus::CannotStop;
-        }
-        if let Some(upper) = &upper
-            && upper.is_outside()
-        {
+        if self.upper.is_outside(position) {
             status = RangeStatus::PositionOutside;
-            max = larger(smaller(max, upper.way_back()), min);
-        } else if let Some(lower) = &lower
-            && lower.is_outside()
-        {
+            max = larger(smaller(max, self.upper.way_back(velocity, reachable, brake)), min);
+        } else if self.lower.is_outside(-position) {
             status = RangeStatus::PositionOutside;
-            min = smaller(larger(min, -lower.way_back()), max);
+            min = smaller(larger(min, -self.lower.way_back(-velocity, reachable.mirrored(), -brake)), max);
         }
         let narrowed = min > reachable.min || max < reachable.max;
         SafeRange { min, max, brake: smaller(larger(brake, min), max), narrowed, status }
     }
 
-    /// The limit at `side` as a state sees it; none if it is too far to matter.
-    #[inline]
-    fn approach(
-        &self,
-        side: Side,
-        (position, velocity): (f64, f64),
-        reachable: Interval,
-        brake: f64,
-        is_slow: bool,
-    ) -> Option<Approach<'_>> {
-        let (braking, position, velocity, reachable, brake) = match side {
-            Side::Upper => (&self.upper, position, velocity, reachable, brake),
-            Side::Lower => (&self.lower, -position, -velocity, reachable.mirrored(), -brake),
-        };
-        if is_slow && braking.is_far(position) && position >= braking.limit - braking.width {
-            return None;
-        }
-        let table = self.table.as_ref().map(|table| table.curve(side));
-        let sampled = self.samples.and_then(|samples| samples.side(side));
-        Some(Approach { braking, table, sampled, position, velocity, reachable, brake })
-    }
-
     /// The range of a state that is not finite: braking as far as the velocity is known.
     fn blind_range(&self, velocity: f64) -> SafeRange {
-        let brake =
-            if velocity.is_finite() { towards_zero(velocity, self.planner.reachable(velocity)) } else { 0.0 };
+        let brake = if velocity.is_finite() { towards_zero(self.planner.reachable(velocity)) } else { 0.0 };
         SafeRange { min: brake, max: brake, brake, narrowed: true, status: RangeStatus::Unknown }
     }
 }
 
-impl Approach<'_> {
-    /// Whether the position is beyond the limit by more than rounding.
-    #[inline]
-    pub(crate) fn is_outside(&self) -> bool {
-        self.position > self.braking.limit + self.braking.tolerance
-    }
-
+impl Braking {
     /// Whether braking at once, from inside, overruns the limit by more than rounding.
     #[inline]
-    fn cannot_stop(&self) -> bool {
-        let kept = self.braking.limit + self.braking.tolerance;
-        self.velocity > 0.0 && self.position + self.braking.distance(self.velocity) > kept
+    fn cannot_stop(&self, position: f64, velocity: f64) -> bool {
+        position + self.distance(velocity) > self.limit + self.tolerance
     }
 
     /// Greatest velocity from beyond the limit that still leads back: braking while it moves out, then half of what
     /// one period can reach from rest.
-    fn way_back(&self) -> f64 {
-        if self.velocity > 0.0 {
-            self.brake
+    fn way_back(&self, velocity: f64, reachable: Interval, brake: f64) -> f64 {
+        if velocity > 0.0 {
+            brake
         } else {
-            let slowest_return = 0.5 * self.braking.step;
-            smaller(larger(-slowest_return, self.reachable.min), self.reachable.max)
+            let slowest_return = 0.5 * self.step;
+            smaller(larger(-slowest_return, reachable.min), reachable.max)
         }
     }
 }
 
 /// The velocity nearest to zero that the braking policy steps to.
 #[inline]
-fn towards_zero(velocity: f64, reachable: Interval) -> f64 {
-    if velocity > 0.0 {
-        larger(reachable.min, 0.0)
-    } else if velocity < 0.0 {
-        smaller(reachable.max, 0.0)
-    } else {
-        0.0
-    }
+fn towards_zero(reachable: Interval) -> f64 {
+    smaller(larger(reachable.min, 0.0), reachable.max)
 }
 
 /// Checks that the knots lie where braking steps ask for, at the distances that braking takes.

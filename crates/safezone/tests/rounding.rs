@@ -62,7 +62,8 @@ proptest! {
         let travel = planner.displacement(velocity, range.max) + zone.stopping_distance(range.max.max(0.0));
         let excess = travel - (planner.limits().position().max - zone.guard(Side::Upper) - position);
         let (scale, periods) = scale_and_periods(&planner);
-        let allowed = 14.0 + 0.125 * (periods + ULPS_OF_ONE_RANGE);
-        prop_assert!(excess <= 0.5 * allowed * f64::EPSILON * scale, "{} ulps", excess / (f64::EPSILON * scale));
+        // Fourteen roundings, and the eighth of the guard within which a solution by iteration stops.
+        let allowed = 7.0 + 0.125 * (periods + ULPS_OF_ONE_RANGE);
+        prop_assert!(excess <= allowed * f64::EPSILON * scale, "{} ulps", excess / (f64::EPSILON * scale));
     }
 }
