@@ -20,10 +20,15 @@ fn share_given_away(
     prop_assert!(found.min <= found.max && found.contains(found.brake), "{at}");
     prop_assert!(found.contains(exact.brake) && found.brake == exact.brake, "{at}");
     prop_assert_eq!(found.status, exact.status, "{}", at);
+    // Where a turning point just fits before one limit, the end on the other side jumps: there the exact one counts that is a
+    // fiftieth of a braking step's way nearer to that limit.
+    let aside = 0.02 * planner.period() * planner.authority(Direction::Decreasing).velocity_change;
+    let [nearer_below, nearer_above] =
+        [position - aside, position + aside].map(|position| closed.range(position, velocity));
     let mut worst = 0.0_f64;
-    for (lacking, side, direction) in [
-        (exact.max - found.max, Side::Upper, Direction::Decreasing),
-        (found.min - exact.min, Side::Lower, Direction::Increasing),
+    for (lacking, jump, side, direction) in [
+        (exact.max - found.max, exact.max - nearer_below.max, Side::Upper, Direction::Decreasing),
+        (found.min - exact.min, nearer_above.min - exact.min, Side::Lower, Direction::Increasing),
     ] {
         let authority = planner.authority(direction);
         let step = authority.velocity_change;
@@ -31,7 +36,7 @@ fn share_given_away(
         let overshoot = authority.reverse_travel * step;
         let rounding = (closed.guard(side) - 2.0 * overshoot).max(0.0) / planner.period();
         prop_assert!(lacking >= -200.0 * rounding - 1e-12 * step, "{side:?} {at}: {lacking:e} beyond");
-        worst = worst.max((lacking - 200.0 * rounding) / step);
+        worst = worst.max((lacking - jump.max(0.0) - 200.0 * rounding) / step);
     }
     Ok(worst)
 }
@@ -99,5 +104,44 @@ fn samples_some_knots_apart_give_away_little_too() {
         let limits = Limits::try_from(limits).unwrap();
         let worst = most_given_away(Planner::try_from(PlannerSpec { limits, ..spec }).unwrap());
         assert!(worst <= tolerance::SAMPLES_SOME_KNOTS_APART, "{shape:?}: {worst} of a braking step");
+    }
+}
+
+/// From every velocity on knots and between them, moving away faster than one period can undo and ten braking steps fast, at
+/// distances from the limit from a millionth of the interval on: nearly what the closed form leaves, and the more the farther.
+#[test]
+fn samples_near_a_limit_give_away_little_from_every_velocity() {
+    for (shape, acceleration) in [Shape::Smoothstep, Shape::SineQuintic].into_iter().flat_map(|shape| {
+        [(-1.0, 1.0), (-1.0, 0.3), (-0.3, 1.0)].map(|(min, max)| (shape, Interval::new(min, max)))
+    }) {
+        let spec = *telescope::planner(shape, Timing::Fastest).spec();
+        let limits = LimitsSpec { acceleration, ..spec.limits.into() };
+        let limits = Limits::try_from(limits).unwrap();
+        let planner = Planner::try_from(PlannerSpec { limits, ..spec }).unwrap();
+        let mut samples = Samples::default();
+        let closed = SafeZone::closed_form(planner).unwrap();
+        let sampled = SafeZone::sampled(planner, &mut samples).unwrap();
+        let step = planner.authority(Direction::Decreasing).velocity_change;
+        let position = planner.limits().position();
+        for velocity in
+            (-80..=180).flat_map(|knot| [0.0, 0.4].map(|share| (f64::from(knot) + share) / 16.0 * step))
+        {
+            if !planner.velocity().contains(velocity) {
+                continue;
+            }
+            let end = position.max - closed.guard(Side::Upper) - closed.stopping_distance(velocity.max(0.0));
+            let mut narrower = f64::NEG_INFINITY;
+            for tenths in (0..=50).rev() {
+                let start = (end - position.width() * 10_f64.powf(-1.0 - 0.1 * f64::from(tenths)), velocity);
+                let share = share_given_away((&closed, &sampled), start).unwrap();
+                assert!(
+                    share <= tolerance::SAMPLES_SOME_KNOTS_APART,
+                    "{share} of a braking step from {start:?}"
+                );
+                let range = sampled.range(start.0, start.1);
+                assert!(range.max >= narrower - 1e-9 * step, "{range:?} from {start:?} after {narrower}");
+                narrower = range.max;
+            }
+        }
     }
 }
