@@ -3,9 +3,9 @@
 use jbtg::strategies::{decades, planners};
 use jbtg::{Direction, Interval, Limits, LimitsSpec, Planner, PlannerSpec, Shape, Timing};
 use proptest::prelude::*;
-use safezone::{SafeZone, Samples, Side};
+use safezone::{RangeStatus, SafeZone, Samples, Side};
 
-use crate::adversary::safe_state;
+use crate::adversary::{Noise, safe_state, worst_excess};
 use crate::telescope;
 use crate::tolerance;
 
@@ -142,6 +142,33 @@ fn samples_near_a_limit_give_away_little_from_every_velocity() {
                 assert!(range.max >= narrower - 1e-9 * step, "{range:?} from {start:?} after {narrower}");
                 narrower = range.max;
             }
+        }
+    }
+}
+
+/// Intervals of a tenth to a hundred-millionth of what a braking step covers, where a velocity's rounding is much of the room.
+#[test]
+fn samples_keep_the_limits_of_tiny_intervals() {
+    let unit = telescope::planner(Shape::Smoothstep, Timing::Fastest);
+    let way = unit.period() * unit.authority(Direction::Decreasing).velocity_change;
+    for exponent in 1..=8 {
+        let position = Interval::new(0.0, way * 10_f64.powi(-exponent));
+        let limits = Limits::try_from(LimitsSpec { position, ..unit.spec().limits.into() }).unwrap();
+        let planner = Planner::try_from(PlannerSpec { limits, ..*unit.spec() }).unwrap();
+        let mut samples = Samples::default();
+        let zone = SafeZone::sampled(planner, &mut samples).unwrap();
+        let (mut noise, mut action) = (Noise(7), 1.0);
+        let (mut position, mut velocity) = (0.5 * position.max, 0.0);
+        for _ in 0..2000 {
+            if noise.unit() < 0.1 {
+                action = -action;
+            }
+            let command = zone.command(position, velocity, action);
+            assert_eq!(command.range.status, RangeStatus::Safe, "{exponent}: {position:e}, {velocity:e}");
+            let step = planner.ramp(position, velocity, command.velocity).unwrap();
+            let excess = worst_excess(&step.extrema(), &limits);
+            assert!(excess <= tolerance::LIMIT, "{exponent}: {excess:e} from {position:e}, {velocity:e}");
+            (position, velocity) = (step.end().position, step.end().velocity);
         }
     }
 }

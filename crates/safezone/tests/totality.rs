@@ -52,6 +52,12 @@ fn check_total(
             reachable.contains(range.min) && reachable.contains(range.max),
             "{range:?} of {reachable:?}"
         );
+        prop_assert_eq!(
+            range.narrowed,
+            range.min > reachable.min || range.max < reachable.max,
+            "{:?}",
+            range
+        );
     }
     prop_assert!(zone.stopping_distance(velocity) >= 0.0, "{velocity:e}");
     Ok(())
