@@ -69,14 +69,11 @@ impl Braking {
     /// cruise; from there on the way to the turning point is the same for all. So the admissible changes are those up to the
     /// one at which the turning point, as it advances, meets what is allowed. If braking itself has a cruise no
     /// turning point advances.
-    #[inline(never)]
+    #[inline]
     fn largest_turning(&self, turns: Option<&Turns>, velocity: f64, travel: f64) -> f64 {
-        if velocity >= self.brake.ramps_only {
-            return f64::INFINITY;
-        }
         let change = match turns {
             Some(turns) => turns.change(velocity, travel),
-            None => self.change_turning_within(velocity, larger(travel, self.distance(velocity))),
+            None => self.change_turning_within(velocity, travel),
         };
         if change < self.brake.ramps_only { change } else { f64::INFINITY }
     }
@@ -84,6 +81,10 @@ impl Braking {
     /// The largest change of a step without a cruise that turns within `travel`, in closed form.
     #[inline(never)]
     fn change_turning_within(&self, velocity: f64, travel: f64) -> f64 {
+        if velocity >= self.brake.ramps_only {
+            return velocity;
+        }
+        let travel = larger(travel, self.distance(velocity));
         let turning = &self.turning;
         // A·T²-like scale: every turning point is a multiple of it that depends on where in the pulse it lies.
         let scale = velocity * sqrt(velocity * turning.rising_per_acceleration);

@@ -247,6 +247,9 @@ impl Braking {
     /// Whether no step from `velocity` on, within the velocity limits, does.
     #[inline]
     pub(crate) fn is_free(&self, position: f64, velocity: f64) -> bool {
+        if self.is_far(position) {
+            return true; // The usual case of one limit of two, for less.
+        }
         let farthest = self.travel_bound(velocity + self.largest_climb) - self.climb_lag;
         position <= self.free_until && position + farthest <= self.free_until
     }

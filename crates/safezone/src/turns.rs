@@ -55,9 +55,8 @@ impl Turns {
     /// Its change, at least `velocity` > 0, if it turns within `travel` or no later than braking.
     #[inline]
     pub(crate) fn change(&self, velocity: f64, travel: f64) -> f64 {
-        let share = velocity * self.mean_lag / travel;
-        let parts = share * share * (velocity * self.parts_per_change);
-        let parts = if travel > 0.0 { smaller(parts, PARTS as f64) } else { PARTS as f64 };
+        let share = velocity * self.mean_lag / larger(travel, 0.0);
+        let parts = smaller(share * share * (velocity * self.parts_per_change), PARTS as f64);
         let (whole, index) = floor(parts);
         let Some(&[low, high]) = self.roots.get(index as usize..).and_then(|roots| roots.first_chunk())
         else {

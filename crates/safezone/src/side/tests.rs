@@ -84,7 +84,7 @@ proptest! {
             let velocity = velocity * highest;
             let end = velocity + braking.largest_climb;
             let far = highest * braking.period + braking.distance(highest);
-            let free = larger(braking.displacement(velocity, end) + braking.distance(end), 0.0);
+            let free = larger(braking.displacement(velocity, end) + braking.distance(end), 0.0).min(far);
             let margin = 1e-9 * far + 4.0 * f64::EPSILON * (braking.kept.abs() + far);
             for (way, is_clear) in [
                 (far, &(|position| braking.is_far(position)) as &dyn Fn(f64) -> bool),
